@@ -2,6 +2,7 @@
 what shows it is made small."""
 
 import collections
+import itertools
 import os
 import pathlib
 import random
@@ -9,11 +10,15 @@ import shlex
 import tempfile
 import tomllib
 import unittest
+import unittest.mock
 
 import tomlkit
 
-from campaign.experiments import Experiments, listed_operators
-from campaign.laws import Broken, Laws
+from campaign.amounts import different
+from campaign.calls import Broken
+from campaign.experiments import BATCH, Experiments, kind, listed_operators
+from campaign.laws import Laws
+from campaign.outcomes import Outcome
 from campaign.random_experiment import Draw, without
 from small_experiment import small_experiment
 
@@ -76,7 +81,7 @@ class Programs(unittest.TestCase):
         return program
 
     def laws(self, program, **limits):
-        return Laws(program, self.folder / "runs", **limits)
+        return Laws(program, self.folder / "runs", built=pathlib.Path(PROGRAM).parent.parent, **limits)
 
     def broken(self, lines, **limits):
         """Returns the law that such a program breaks."""
@@ -111,6 +116,15 @@ class Programs(unittest.TestCase):
         fault = 'case "$*" in *"--threads 3"*) set -- "$@" --seed 99 ;; esac'
         self.assertRegex(self.broken(fault), "^with 3 threads instead of 1: .* differs: ")
 
+    def test_results_that_depend_on_ranks(self):
+        self.needs("3 ranks")
+        fault = '[ "$OMPI_COMM_WORLD_SIZE" != 3 ] || set -- "$@" --seed 99'
+        self.assertRegex(self.broken(fault), "^with 3 ranks instead of 1: .* differs: ")
+
+    def needs(self, law):
+        if law in self.laws(PROGRAM).left_out:
+            self.skipTest(f"{law}: {self.laws(PROGRAM).left_out[law]}")
+
     def test_runs_that_are_not_resumed(self):
         self.assertRegex(self.broken("[ $1 != resume ] || exit 0"), "^with an interruption: .* differs: ")
 
@@ -119,10 +133,77 @@ class Programs(unittest.TestCase):
         fault = f"[ $1 != show ] || {{ {shlex.quote(PROGRAM)} \"$@\" | sed -E '{other}'; exit; }}"
         self.assertRegex(self.broken(fault), "^verification: again 7")
 
+    def test_robots_that_are_changed_by_other_amounts_at_random_places(self):
+        changed = f"{shlex.quote(PROGRAM)} \"$@\" | sed '0,/\"gone\"/s//\"come\"/'"
+        fault = f"case $1:$2 in life:*/random-places) {changed}; exit ;; esac"
+        self.assertRegex(self.broken(fault), "^random-places: spring come 3 instead of 2")
+
+    def test_robots_that_are_born_otherwise_at_random_places(self):
+        fault = 'case "$*" in *development.control=random-places*) set -- "$@" --set encoding.size=[1,1,1] ;; esac'
+        self.assertRegex(self.broken(fault), "^random-places: born with .*8.*, not .*12")
+
+    def test_motion_that_depends_on_precision(self):
+        fault = 'case "$*" in simulate*=float*) set -- "$@" --set scene.gravity.acceleration=15 ;; esac'
+        self.assertRegex(self.broken(fault), "^precision: float differs from double by [0-9.e+]+ .* after 20 steps")
+
+    def test_pages_with_errors(self):
+        self.needs("pages")
+        self.file.write_text(small_experiment())
+        self.assertTrue(self.laws(PROGRAM).page_holds(self.file))
+        broken = r"s/<\/script>/<\/script><script>broken(<\/script>/"
+        reported = f"{shlex.quote(PROGRAM)} \"$@\" && sed -i '{broken}' \"$4\""
+        with self.assertRaisesRegex(Broken, "^page: "):
+            self.laws(self.program(f"[ $1 != report ] || {{ {reported}; exit; }}")).page_holds(self.file)
+
+    def test_laws_that_need_what_is_not_there_are_left_out_by_name(self):
+        with unittest.mock.patch.dict(os.environ, PATH="/nowhere"):
+            self.assertRegex(" ".join(sorted(self.laws(PROGRAM).left_out.items())[0]), "^3 ranks there is no mpirun")
+            self.assertIn("Node.js", self.laws(PROGRAM).left_out["pages"])
+        elsewhere = Laws(PROGRAM, self.folder / "runs", built=self.folder)
+        self.assertEqual(set(elsewhere.left_out), {"3 ranks", "pages"})
+
+
+class Amounts(unittest.TestCase):
+    def test_must_be_equal_where_nothing_can_make_them_differ(self):
+        large, small = {"masses": 60, "springs": 300}, {"masses": 12, "springs": 50}
+        turnover = {"spring gone": 2, "spring come": 2, "spring changed": 1}
+        masses = {"mass gone": 3, "mass come": 3, "spring gone": 20, "spring come": 24}
+        for expected, given, born, wrong in (
+            (turnover, turnover, large, ""),
+            (turnover, turnover | {"spring gone": 1}, large, "spring gone 1 instead of 2"),
+            (turnover, turnover | {"spring changed": 2}, large, "spring changed 2 instead of 1"),
+            (turnover, turnover | {"spring come": 1}, large, "spring come 1 instead of 2"),
+            (turnover, turnover | {"spring come": 1}, small, ""),  # there may be no other pair
+            (turnover, turnover | {"spring come": 3}, small, "spring come 3 instead of 2"),
+            (masses, masses | {"spring gone": 25}, large, ""),  # those of other masses
+            (masses, masses | {"mass gone": 2}, large, "mass gone 2 instead of 3"),
+            (masses, masses | {"mass come": 4}, large, "mass come 4 instead of 3"),
+        ):
+            self.assertEqual(different(*map(collections.Counter, (expected, given)), born), wrong)
+
 
 class Shrinking(unittest.TestCase):
+    def test_faults_of_the_same_kind_are_told_from_others(self):
+        crash, hang = "run: exit code -11: ", "run: not done after 60 s"
+        same = "with 3 threads instead of 1: scores differs: (0, 1)", "with 3 threads instead of 1: notes differs: 7"
+        self.assertEqual(kind(same[0]), kind(same[1]))
+        self.assertEqual(kind(crash), kind("run: exit code -11: no memory"))
+        others = crash, hang, "run: exit code 1: no", "show: exit code 1: no", same[0]
+        self.assertEqual(len(set(map(kind, others))), len(others))
+
+    def test_shrinking_ends_in_time(self):
+        with tempfile.TemporaryDirectory() as scratch, unittest.mock.patch("campaign.experiments.SHRINKING", 0):
+            part = Experiments(listed_operators(PROGRAM), self.NothingRests(), pathlib.Path(scratch))
+            outcomes = []
+            while not any(each.found for each in outcomes):
+                outcomes += part.sitting(1e-9, outcomes)
+            file = pathlib.Path(outcomes[-2].found[0].partition(": ")[0])
+            self.assertGreater(len(tomllib.loads(file.read_text())), 1)
+
     class NothingRests:
         """Laws that every experiment breaks whose bodies return to rest."""
+
+        left_out = {}
 
         def hold(self, file):
             tables = tomllib.loads(file.read_text())
@@ -143,6 +224,44 @@ class Shrinking(unittest.TestCase):
             self.assertEqual(tomllib.loads(pathlib.Path(file).read_text()), {"development": {"reset": True}})
             self.assertEqual([each.name for each in (folder / "found").iterdir()], [pathlib.Path(file).name])
             self.assertEqual(sum(each.tried for each in outcomes), len(outcomes) / 2)
+
+    def test_what_is_not_shown_again_is_found_nevertheless(self):
+        laws = unittest.mock.Mock(left_out={})
+        laws.hold.side_effect = [Broken("rest: not reached"), *[True] * 1000]
+        with tempfile.TemporaryDirectory() as scratch:
+            outcomes = list(Experiments(listed_operators(PROGRAM), laws, pathlib.Path(scratch)).sitting(1e-9, ()))
+        self.assertRegex(outcomes[0].found[0], "experiment-0.toml: rest: not reached; not ")
+
+    class NoPageOpens:
+        """Laws of which the last is broken, and one is left out."""
+
+        left_out = {"3 ranks": "there is no mpirun"}
+
+        def __init__(self):
+            self.tried, self.opened = 0, []
+
+        def hold(self, file):
+            self.tried += 1
+            return self.tried % 3 == 0
+
+        def page_holds(self, file):
+            self.opened.append(file.name)
+            if file.name == f"experiment-{100 + BATCH + 1}.toml":
+                raise Broken("page: does not open")
+            return len(self.opened) == 2
+
+    def test_a_page_of_each_batch_is_opened_and_what_is_left_out_is_named(self):
+        nothing_smaller = unittest.mock.patch("campaign.experiments.without", lambda tables: ())
+        with tempfile.TemporaryDirectory() as scratch, nothing_smaller:
+            part = Experiments(listed_operators(PROGRAM), self.NoPageOpens(), pathlib.Path(scratch))
+            past = [Outcome("experiments", case, tried, (), 1) for case, tried in (("runs", 100), ("pages", 5))]
+            outcomes = list(itertools.islice(part.sitting(1e9, past), 7))
+        cases = [(each.case, each.tried, len(each.found)) for each in outcomes]
+        batch = [("runs", 6, 0), ("refused by check", 14, 0), ("pages", 1, 0)]
+        self.assertEqual(cases[0], ("3 ranks: left out, since there is no mpirun", 0, 0))
+        self.assertEqual(cases[1:4], batch)
+        self.assertEqual(cases[4:], [("runs", 7, 0), ("refused by check", 13, 0), ("pages", 1, 1)])
+        self.assertIn(f"experiment-{100 + BATCH + 1}.toml: page: does not open", outcomes[-1].found[0])
 
 
 if __name__ == "__main__":

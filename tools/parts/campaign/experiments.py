@@ -2,6 +2,7 @@
 
 import json
 import random
+import re
 import subprocess
 import time
 
@@ -9,11 +10,13 @@ import tomlkit
 
 from common.command_line import Failure
 
-from .laws import Broken
+from .calls import Broken
 from .outcomes import Outcome
 from .random_experiment import Draw, without
 
-BATCH = 20  # experiments of one outcome
+BATCH = 20  # experiments of one outcome, of whose first run the page is opened
+SHRINKING = 300  # s after which an experiment that breaks a law is small enough
+EXPERIMENTS = ("runs", "refused by check")  # cases of which each experiment is one
 
 
 def listed_operators(program):
@@ -35,12 +38,14 @@ class Experiments:
         self._found = folder.resolve() / "found"
 
     def sitting(self, seconds, past):
-        number = sum(each.tried for each in past)
+        number = sum(each.tried for each in past if each.case in EXPERIMENTS)
         end = time.monotonic() + seconds
+        for law, reason in self._laws.left_out.items():
+            yield Outcome(self.name, f"{law}: left out, since {reason}", 0, (), 0)
         while True:  # at least one, however little time there is
-            began, counts, found = time.monotonic(), {"runs": 0, "refused by check": 0}, []
+            began, counts, found = time.monotonic(), dict.fromkeys(EXPERIMENTS, 0), []
             for number in range(number, number + BATCH):
-                accepted, fault = self._try(number)
+                accepted, fault = self._try(number, self._laws.hold)
                 counts["runs" if accepted else "refused by check"] += 1
                 found += [fault] * bool(fault)
                 if time.monotonic() >= end:
@@ -51,36 +56,51 @@ class Experiments:
                 yield Outcome(self.name, case, tried, tuple(found) if case == "runs" else (), spent * tried)
             if time.monotonic() >= end:
                 return
+            if "pages" not in self._laws.left_out:
+                yield from self._page(range(number - BATCH, number))
 
-    def _try(self, number):
-        """Returns whether an experiment was accepted, and the fault that it shows, if any."""
+    def _page(self, numbers):
+        """Opens the page of the first of some experiments that is accepted."""
+        began = time.monotonic()
+        for number in numbers:
+            accepted, fault = self._try(number, self._laws.page_holds)
+            if accepted:
+                yield Outcome(self.name, "pages", 1, (fault,) if fault else (), time.monotonic() - began)
+                return
+
+    def _try(self, number, hold):
+        """Returns whether an experiment was accepted, and the fault that it shows, if any. `hold` tries the laws."""
         tables = Draw(self._operators, random.Random(number)).experiment()
         self._found.mkdir(parents=True, exist_ok=True)
         file = self._found / f"experiment-{number}.toml"
-        accepted, law = self._broken(tables, file)
+        accepted, law = self._broken(tables, file, hold)
         if not law:
             file.unlink()
             return accepted, None
-        tables = self._shrunk(tables, kind(law), file)
-        _, law = self._broken(tables, file)
-        return True, f"{file}: {law}"
+        tables = self._shrunk(tables, kind(law), file, hold, time.monotonic() + SHRINKING)
+        _, again = self._broken(tables, file, hold)
+        return True, f"{file}: {again or f'{law}; not when it was tried again'}"
 
-    def _broken(self, tables, file):
+    @staticmethod
+    def _broken(tables, file, hold):
         file.write_text(tomlkit.dumps(tables))
         try:
-            return self._laws.hold(file), None
+            return hold(file), None
         except Broken as broken:
             return True, str(broken)
 
-    def _shrunk(self, tables, of_kind, file):
-        """Returns the experiment without all that can be left out while the law stays broken."""
+    def _shrunk(self, tables, of_kind, file, hold, end):
+        """Returns the experiment without all that can be left out while the law stays broken, as far as that is found
+        before `end`."""
         for smaller in without(tables):
-            _, law = self._broken(smaller, file)
+            if time.monotonic() >= end:
+                break
+            _, law = self._broken(smaller, file, hold)
             if law and kind(law) == of_kind:
-                return self._shrunk(smaller, of_kind, file)
+                return self._shrunk(smaller, of_kind, file, hold, end)
         return tables
 
 
 def kind(law):
     """Returns what a message about a broken law says before its particulars."""
-    return law.partition(":")[0]
+    return re.match(r"[^:]*(: exit code -?\d+|: not done)?", law)[0]

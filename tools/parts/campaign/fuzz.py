@@ -14,8 +14,8 @@ from .outcomes import Outcome
 CORPUS = pathlib.Path(__file__).resolve().parents[3] / "tests" / "fuzz" / "corpus"
 MEGABYTES = 2048  # of memory of a target, and
 SECONDS = 10  # of an input, beyond which it counts as a fault
-# in what is said of a fault: quoted texts, addresses and numbers, but those of lines and columns; without them, the same
-# is said of the same fault
+# in what is said of a fault: quoted texts, addresses, and numbers other than those of lines and columns; without them,
+# the same is said of the same fault
 PARTICULARS = re.compile(r'".*?"|(?<!\+)\b0x[0-9a-f]+|(?<![:\w])\d[\d.]*')
 OF_WORDS = ("experiment",)  # targets to which the names of operators and parameters are given
 

@@ -3,72 +3,107 @@
 import contextlib
 import json
 import math
+import os
 import pathlib
 import shutil
 import signal
 import sqlite3
 import subprocess
+import tomllib
+
+from .amounts import keeps_amounts
+from .calls import Broken, Program, require
+from .rounding import float_is_near_double
+from .run_page import Page
 
 STOPPED = 130  # exit code of a run that was asked to stop
 NOT_COMPARED = ("record", "provenances", "operators", "files")  # tables that tell where and how a run was made
 OTHERWISE = {"generations": ("wall_time",), "individuals": ("provenance",)}  # columns that do, too
 
 
-class Broken(Exception):
-    """A law that does not hold, with what shows it."""
-
-
 class Laws:
     """Tries experiments with a program, in a folder whose content it removes. A command that takes more than `seconds`
-    breaks a law, too."""
+    breaks a law, too. The laws that need other programs or another build are `left_out`, each with the reason. `built`
+    is the folder where the program was built or installed."""
 
-    def __init__(self, program, folder, seconds=60):
-        self._program, self._folder, self._seconds = program, folder, seconds
+    def __init__(self, program, folder, seconds=60, built=None):
+        built = built or pathlib.Path(program).parent.parent
+        self._evodevo, self._folder = Program(program, seconds), folder
+        self._page = Page(built)
+        self.left_out = {}
+        if not shutil.which("mpirun"):
+            self.left_out["3 ranks"] = "there is no mpirun"
+        elif not (built / "lib" / "libevodevo-mpi.so").exists():
+            self.left_out["3 ranks"] = "evodevo was built without MPI"
+        if self._page.obstacle:
+            self.left_out["pages"] = self._page.obstacle
 
     def hold(self, file):
         """Returns whether the program accepts the experiment in a file; raises Broken if it does, and a law does not
         hold, or if the program refuses it in any way but with a message."""
+        if not self._is_accepted(file):
+            return False
+        one, three, parts = (self._folder / name for name in ("one", "three", "parts"))
+        require(self._evodevo("run", file, *made(one, 1)), "run")
+        best = self._makes_sense(one)
+        require(self._evodevo("run", file, *made(three, 3)), "run --threads 3")
+        same_rows(one, three, "with 3 threads instead of 1")
+        self.run_in_parts(file, parts)
+        same_rows(one, parts, "with an interruption")
+        if "3 ranks" not in self.left_out:
+            self._is_same_with_ranks(file, one)
+        if develops(file):
+            keeps_amounts(self._evodevo, file, self._folder)
+        if best:
+            float_is_near_double(self._evodevo, file, one, best["individual"], self._folder)
+        return True
+
+    def page_holds(self, file):
+        """Like hold(), for the law that the page of a run opens in a browser without a complaint."""
+        if not self._is_accepted(file):
+            return False
+        run, page = self._folder / "one", self._folder / "page.html"
+        require(self._evodevo("run", file, *made(run, 1)), "run")
+        require(self._evodevo("report", run, "--out", page), "report")
+        self._page.opens(page)
+        return True
+
+    def _is_accepted(self, file):
         shutil.rmtree(self._folder, ignore_errors=True)
         self._folder.mkdir(parents=True)
         checked = self._evodevo("check", file)
         if checked.returncode == 2 and str(file) in checked.stderr:
             return False
         require(checked, "check")
-        one, three, parts = (self._folder / name for name in ("one", "three", "parts"))
-        require(self._evodevo("run", file, *made(one, 1)), "run")
-        self._makes_sense(one)
-        require(self._evodevo("run", file, *made(three, 3)), "run --threads 3")
-        same_rows(one, three, "with 3 threads instead of 1")
-        self.run_in_parts(file, parts)
-        same_rows(one, parts, "with an interruption")
         return True
 
-    def _evodevo(self, *words):
-        command = [self._program, *map(str, words)]
-        try:
-            return subprocess.run(command, capture_output=True, text=True, timeout=self._seconds, stdin=subprocess.DEVNULL)
-        except subprocess.TimeoutExpired:
-            raise Broken(f"{words[0]}: not done after {self._seconds} s") from None
+    def _is_same_with_ranks(self, file, one):
+        ranks = self._folder / "ranks"
+        # Open MPI refuses to work for root unless it is told
+        env = os.environ | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+        launcher = ("mpirun", "--oversubscribe", "--bind-to", "none", "-n", "3")
+        require(self._evodevo("run", file, *made(ranks, 1), under=launcher, env=env), "run with 3 ranks")
+        same_rows(one, ranks, "with 3 ranks instead of 1")
 
     def run_in_parts(self, file, folder):
         """Makes the run, asks it to stop after the first generation, and resumes it."""
-        command = [self._program, "run", file, *made(folder, 1)]
+        command, seconds = [self._evodevo.path, "run", file, *made(folder, 1)], self._evodevo.seconds
         with subprocess.Popen([*map(str, command)], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as run:
             next((line for line in run.stdout if line.startswith("generation ")), None)
             run.send_signal(signal.SIGINT)
             try:
-                run.communicate(timeout=self._seconds)
+                run.communicate(timeout=seconds)
             except subprocess.TimeoutExpired:
                 run.kill()
-                raise Broken(f"run, interrupted: not done after {self._seconds} s") from None
+                raise Broken(f"run, interrupted: not done after {seconds} s") from None
         if run.returncode not in (0, STOPPED):
             raise Broken(f"run, interrupted: exit code {run.returncode}")
         if run.returncode == STOPPED:
             require(self._evodevo("resume", folder, "--no-report"), "resume")
 
     def _makes_sense(self, folder):
-        shown = self._evodevo("show", folder, "--json")
-        require(shown, "show")
+        """Returns the best robot; None if there is none."""
+        best = json.loads(self._evodevo.output("show", folder, "--json"))["best"]
         with contextlib.closing(sqlite3.connect(folder / "run.sqlite")) as run:
             for table in ("scores", "measured", "tests", "notes"):
                 for (value,) in run.execute(f"SELECT value FROM {table}"):
@@ -77,7 +112,8 @@ class Laws:
             statuses = {status for (status,) in run.execute("SELECT DISTINCT status FROM individuals")}
         if not statuses <= {"ok", "invalid", "diverged", "artefact", "passive"}:
             raise Broken(f"statuses: {statuses}")
-        self._is_replayed(json.loads(shown.stdout)["best"])
+        self._is_replayed(best)
+        return best
 
     @staticmethod
     def _is_replayed(best):
@@ -92,10 +128,10 @@ def made(folder, threads):
     return ["--out", folder, "--threads", threads, "--no-report"]
 
 
-def require(done, what):
-    if done.returncode != 0:
-        last = " / ".join((done.stderr or done.stdout).strip().splitlines()[-2:])
-        raise Broken(f"{what}: exit code {done.returncode}: {last}")
+def develops(file):
+    """Returns whether an experiment has operators that develop bodies."""
+    development = tomllib.loads(file.read_text()).get("development", {})
+    return development.get("cycles", 0) > 0 and bool(development.get("operator"))
 
 
 def rows_of(folder):

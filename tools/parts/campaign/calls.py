@@ -1,0 +1,41 @@
+"""Calls of the program that a campaign tries."""
+
+import subprocess
+
+
+class Broken(Exception):
+    """A law that does not hold, with what shows it."""
+
+
+class Program:
+    """The program. A command that takes more than `seconds` breaks a law."""
+
+    def __init__(self, path, seconds):
+        self.path, self.seconds = path, seconds
+
+    def __call__(self, *words, under=(), env=None):
+        """Returns how a command ended. `under` is the command that starts it, such as a launcher of MPI."""
+        command = [*under, self.path, *words]
+        try:
+            return subprocess.run(
+                [*map(str, command)],
+                capture_output=True,
+                text=True,
+                timeout=self.seconds,
+                stdin=subprocess.DEVNULL,
+                env=env,
+            )
+        except subprocess.TimeoutExpired:
+            raise Broken(f"{words[0]}: not done after {self.seconds} s") from None
+
+    def output(self, *words):
+        """Returns what a command prints, which must succeed."""
+        done = self(*words)
+        require(done, words[0])
+        return done.stdout
+
+
+def require(done, what):
+    if done.returncode != 0:
+        last = " / ".join((done.stderr or done.stdout).strip().splitlines()[-2:])
+        raise Broken(f"{what}: exit code {done.returncode}: {last}")
