@@ -206,20 +206,23 @@ TEST(Verify, TheSameEveryTimeWhateverElseIsVerified) {
   }
 }
 
-/// Without ground, the posture of a body determines its time step.
+/// Without ground, the posture of a body determines its time step, as dashpots do.
 TEST(Verify, ABodyThatNoOperatorChangesKeepsItsFitnessToo) {
   std::string swimmers = walkers;
   const std::size_t scene = swimmers.find("[scene.gravity]");
   swimmers.replace(scene, swimmers.find("[[fitness]]") - scene, "[scene.drag]\n[development]\ncycles = 3\n");
-  const Experiment experiment = testing::read(
-      swimmers,
-      {{"simulation.accuracy", "balanced", "--set"}, {"fitness.0.settle", "0", ""}, {"fitness.0.window", "2", ""}});
-  const auto simulator = simulator_for(experiment);
-  std::vector<Individual> individuals = evaluated(experiment, *simulator, breed(experiment, {}, 0, 0, 6));
-  std::erase_if(individuals, [](const Individual& i) { return i.result.status != Status::ok; });
-  ASSERT_GE(individuals.size(), 3u);
-  for (const Verification& swimmer : verified(experiment, *simulator, individuals))
-    EXPECT_EQ(value(swimmer, "again"), swimmer.fitness) << "the same bits";
+  for (const std::string damping : {"0", "0.8"}) {
+    const Experiment experiment = testing::read(swimmers, {{"simulation.accuracy", "balanced", "--set"},
+                                                           {"materials.muscle.damping", damping, "--set"},
+                                                           {"fitness.0.settle", "0", ""},
+                                                           {"fitness.0.window", "2", ""}});
+    const auto simulator = simulator_for(experiment);
+    std::vector<Individual> individuals = evaluated(experiment, *simulator, breed(experiment, {}, 0, 0, 6));
+    std::erase_if(individuals, [](const Individual& i) { return i.result.status != Status::ok; });
+    ASSERT_GE(individuals.size(), 3u);
+    for (const Verification& swimmer : verified(experiment, *simulator, individuals))
+      EXPECT_EQ(value(swimmer, "again"), swimmer.fitness) << "the same bits, with damping " << damping;
+  }
 }
 
 /// A small run, and the folder with its archive.
