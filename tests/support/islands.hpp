@@ -52,9 +52,8 @@ struct Interruption {
 };
 
 /// Begins or continues the run with these islands in a folder.
-inline void evolve_islands(const std::vector<Experiment>& experiments, const std::filesystem::path& folder, int threads,
-                           std::optional<Interruption> interruption = std::nullopt) {
-  const auto simulator = make_cpu_simulator(experiments.front().scene, experiments.front().stepping, threads);
+inline void evolve_islands(const std::vector<Experiment>& experiments, const std::filesystem::path& folder,
+                           Simulator& simulator, std::optional<Interruption> interruption = std::nullopt) {
   std::vector<Archive> archives;
   std::vector<std::unique_ptr<LocalEvaluator>> evaluators;
   std::vector<IslandRun> runs;
@@ -62,10 +61,10 @@ inline void evolve_islands(const std::vector<Experiment>& experiments, const std
   for (const Experiment& island : experiments) {
     const std::filesystem::path place = island_folder(folder, island.island);
     archives.push_back(std::filesystem::exists(place) ? Archive::resume(place)
-                                                      : Archive::create(place, island, simulator->device()));
+                                                      : Archive::create(place, island, simulator.device()));
   }
   for (std::size_t i = 0; i < experiments.size(); ++i) {
-    evaluators.push_back(std::make_unique<LocalEvaluator>(experiments[i], *simulator));
+    evaluators.push_back(std::make_unique<LocalEvaluator>(experiments[i], simulator));
     Observer observer;
     observer.generation_done = [&, number = experiments[i].island](const Summary& summary) {
       if (interruption && interruption->island == number && interruption->generation == summary.generation) stop = true;
@@ -74,6 +73,11 @@ inline void evolve_islands(const std::vector<Experiment>& experiments, const std
   }
   LocalExchange exchange;
   evolve(runs, exchange, next_generations(archives), stop);
+}
+inline void evolve_islands(const std::vector<Experiment>& experiments, const std::filesystem::path& folder, int threads,
+                           std::optional<Interruption> interruption = std::nullopt) {
+  const auto simulator = make_cpu_simulator(experiments.front().scene, experiments.front().stepping, threads);
+  evolve_islands(experiments, folder, *simulator, interruption);
 }
 
 /// Expects that the islands of both runs are the same, with their migrants.
