@@ -14,6 +14,7 @@ from .fuzz import Fuzz
 from .laws import Laws
 from .outcomes import Record
 from .page import page
+from .soak import Soak
 
 
 def main(given, program):
@@ -22,7 +23,7 @@ def main(given, program):
 
 def parts(program, folder):
     operators, laws = listed_operators(program), Laws(program, folder.resolve() / "experiments")
-    return [Experiments(operators, laws, folder), Fuzz(built_targets(), operators, folder)]
+    return [Experiments(operators, laws, folder), Fuzz(built_targets(), operators, folder), Soak(program, folder)]
 
 
 def built_targets():
