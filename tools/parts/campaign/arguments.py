@@ -16,6 +16,14 @@ example:
 def parse(words):
     parser = command_line.parser("campaign", DESCRIPTION, EPILOG)
     add = parser.add_argument
-    add("--minutes", metavar="N", type=positive, required=True, help="time of this sitting, shared by all parts")
+    amount = parser.add_mutually_exclusive_group(required=True)
+    amount.add_argument("--minutes", metavar="N", type=positive, help="time of this sitting, shared by all parts")
+    amount.add_argument(
+        "--planted",
+        metavar="N",
+        type=positive,
+        help="instead of looking for faults, plant N of them, one at a time, in a copy of the last commit, and ask the "
+        "tests; this takes some minutes for each fault",
+    )
     add("--out", metavar="DIR", type=pathlib.Path, default=pathlib.Path("runs/campaign"), help="folder for results (%(default)s)")
     return parser.parse_args(words)

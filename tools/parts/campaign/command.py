@@ -14,11 +14,22 @@ from .fuzz import Fuzz
 from .laws import Laws
 from .outcomes import Record
 from .page import page
+from .planted import Planted
 from .soak import Soak
+from .workshop import Workshop
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
 
 
 def main(given, program):
-    return ended("campaign", lambda: campaign(given.minutes * 60, given.out, parts(program, given.out)))
+    return ended("campaign", lambda: sit(given, program))
+
+
+def sit(given, program):
+    if given.planted:
+        campaign(0, given.out, [Planted(Workshop(ROOT, given.out / "planted"), given.out, given.planted)])
+    else:
+        campaign(given.minutes * 60, given.out, parts(program, given.out))
 
 
 def parts(program, folder):
