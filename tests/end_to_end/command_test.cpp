@@ -55,6 +55,15 @@ TEST_F(Command, RunSaysWhereOnWhatAndHowFast) {
     EXPECT_THAT(finished.output, ContainsRegex(part + std::string(" [0-9]+ %")));
 }
 
+TEST_F(Command, ShowTellsWhichBlocksCameWithEachChild) {
+  const Finished run =
+      evodevo({"run", file_, "--out", folder_, "--set", "encoding={name = 'neat'}", "--set", "mutation.0.name=add-node",
+               "--set", "mutation.0.probability=1", "--set", "crossover.0.probability=0"});
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  EXPECT_THAT(evodevo({"show", folder_}).output,
+              ContainsRegex("[0-9]+ .add-node: .1 node, .2 link. < [0-9]+ .random.\n"));
+}
+
 TEST_F(Command, ShowAgreesWithTheArchive) {
   run_small();
   const Finished shown = evodevo({"show", folder_, "--json"});

@@ -231,6 +231,12 @@ TEST_F(Simulate, TheStepIsJudgedByTheBodysOwnMassesAndMaterials) {
   EXPECT_THAT(light.output, HasSubstr("lightest mass"));
 }
 
+TEST_F(Simulate, ABodyThatDivergesIsAFailure) {
+  const Finished finished = simulate(tetrahedron("0.5", 2e7), {"--set", "simulation.unstable=run"});
+  EXPECT_EQ(finished.exit_code, 1);
+  EXPECT_THAT(finished.output, HasSubstr("diverged after "));
+}
+
 TEST_F(Simulate, WhatIsUnstableRunsWhereTheFileAsksForIt) {
   const std::vector<std::string> run = {"--set", "simulation.unstable=run"};
   const Finished light = simulate(tetrahedron("0.002", 500), run);

@@ -193,6 +193,14 @@ TEST(BodyBuilding, ALoadLiesOnTheTop) {
   EXPECT_NEAR(centre_of_mass(body, positions).x, 0, 1e-15) << "over the origin with its load";
 }
 
+TEST(BodyBuilding, HeldMassesCarryNoLoad) {
+  Body body;
+  for (const double mass : {0.0, 0.2}) body.masses.push_back({{0, 0, 1}, mass});
+  add_payload(body, 1.5, 0.2);
+  EXPECT_EQ(body.masses[0].mass, 0);
+  EXPECT_DOUBLE_EQ(body.masses[1].payload, 0.3);
+}
+
 TEST(BodyBuilding, SaysWhyThereIsNoBody) {
   EXPECT_THAT(build_body(row({}, 3)).failure, testing::at_place("no body: ", "masses"));
   EXPECT_THAT(build_body(row({{0, 0}}, 3)).failure, testing::naming("no springs"));

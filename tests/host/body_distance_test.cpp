@@ -60,6 +60,7 @@ TEST(BodyDistance, OfSpringsToMassesThatCameLaterGoesByWhereTheyCame) {
   elsewhere[3] = {3, 0.9 * same_position, 0};
   EXPECT_EQ(spring_distance(body, chain(elsewhere, {0, 1, 2, 3}, 3)), 0) << "where noise has moved it";
   EXPECT_EQ(spring_distance(body, chain(line, {0, 1, 2, 3}, 4)), 0.5) << "a mass of birth is no later one";
+  EXPECT_EQ(spring_distance(chain(line, {3, 4, 5, 6}, 3), chain(line, {7, 8, 9, 10}, 3)), 0) << "none is left of birth";
 }
 
 TEST(BodyDistance, OfTwoMassesThatCameNearOneTheNearerIsTheSame) {

@@ -1,11 +1,13 @@
 // Bodies in JSON files: reading restores every bit.
 #include "life/body_json.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "base/input_error.hpp"
 #include "base/philox.hpp"
 #include "support/scratch.hpp"
 
@@ -94,6 +96,21 @@ TEST(BodyJson, APlaceIsWhereTheMassIsNow) {
   given.state->position[7] = {1, 2, 3};
   const auto json = nlohmann::json::parse(body_to_json(given, {}));
   EXPECT_EQ(json.at("masses").at(7).at("position"), nlohmann::json({1.0, 2.0, 3.0}));
+}
+
+TEST(BodyJson, AMessageQuotesUpTo60Bytes) {
+  const testing::Scratch scratch;
+  const auto complaint = [&](std::size_t letters) {
+    try {
+      read_body(scratch.write("body.json", '"' + std::string(letters, 'x') + '"'));
+    } catch (const ConfigError& error) {
+      return std::string(error.what());
+    }
+    return std::string("none");
+  };
+  EXPECT_THAT(complaint(58), ::testing::AllOf(::testing::HasSubstr('"' + std::string(58, 'x') + '"'),
+                                              ::testing::Not(::testing::HasSubstr("..."))));
+  EXPECT_THAT(complaint(59), ::testing::HasSubstr('"' + std::string(59, 'x') + "..."));
 }
 
 }  // namespace

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "support/experiments.hpp"
@@ -91,6 +93,27 @@ TEST(Breeding, WithSmallProbabilitiesAChildStillGoesThroughOneOperator) {
       EXPECT_EQ(child.made_by, "reset-weight") << "the only one with a chance";
     }
   }
+}
+
+TEST(Breeding, OperatorsAreDrawnWithTheirProbabilities) {
+  const std::string text = testing::small_experiment + "[[mutation]]\nname = \"gaussian\"\n";
+  // hardly any genome of real genes comes twice
+  const Experiment experiment = testing::read(text, {{"encoding", "{name = 'neural'}", ""},
+                                                     {"mutation.0.probability", "0.6", ""},
+                                                     {"mutation.1.probability", "0.2", ""},
+                                                     {"crossover.0.probability", "0", ""},
+                                                     {"experiment.random_individuals", "0", ""}});
+  std::vector<Individual> population = breed(experiment, {}, 0, 0, 2);
+  for (Individual& individual : population) individual.result.objectives = {1, 1};
+  constexpr std::size_t count = 20'000;
+  std::map<std::string, double> share;
+  for (const Individual& child : breed(experiment, population, 1, 2, count)) share[child.made_by] += 1.0 / count;
+  // If none is drawn, which is so for 0.4 * 0.8 of the children, one of them is used, in the proportion of 3 to 1.
+  const double none = 0.4 * 0.8, five_deviations = 5 * 0.5 / std::sqrt(static_cast<double>(count));
+  EXPECT_NEAR(share["reset-weight"], 0.6 * 0.8 + none * 0.75, five_deviations);
+  EXPECT_NEAR(share["gaussian"], 0.4 * 0.2 + none * 0.25, five_deviations);
+  EXPECT_NEAR(share["reset-weight+gaussian"], 0.6 * 0.2, five_deviations);
+  EXPECT_EQ(share.size(), 3u);
 }
 
 /// A mutation that sets a gene to NaN.

@@ -138,5 +138,20 @@ TEST(Hours, EndTheRunWithTheGenerationThatReachesThem) {
   EXPECT_FALSE(is_finished(experiment, generations));
 }
 
+TEST(BestAndMedian, AreTheExtremeAndTheMiddle) {
+  const auto expect = [](std::vector<double> scores, bool maximise, double best, double median) {
+    const BestAndMedian found = best_and_median(std::move(scores), maximise);
+    EXPECT_EQ(found.best, best);
+    EXPECT_EQ(found.median, median);
+  };
+  expect({4, -1, 2}, true, 4, 2);
+  expect({4, -1, 2}, false, -1, 2);
+  expect({8, 1, 16, 2}, true, 16, 5);  // the mean of the middle two
+  expect({8, 1, 16, 2}, false, 1, 5);
+  expect({3}, true, 3, 3);
+  EXPECT_FALSE(best_and_median({}, true).best.has_value());
+  EXPECT_FALSE(best_and_median({}, true).median.has_value());
+}
+
 }  // namespace
 }  // namespace evodevo

@@ -563,6 +563,23 @@ TEST_F(GoneOn, OnAnotherDeviceWarnsByTheGenerationOfBirth) {
   EXPECT_GT(warned_there, 0);
 }
 
+TEST_F(GoneOn, OnAnotherDeviceNamesUpToSix) {
+  const std::vector<ArchivedIndividual> all = evolved_by_two(experiment_, "there");
+  const Archive archive = Archive::read(folder_);
+  std::vector<const Individual*> unrecorded;
+  for (const ArchivedIndividual& one : all)
+    if (one.born < first_half && !archive.life(one.id)) unrecorded.push_back(&one);
+  ASSERT_GE(unrecorded.size(), 7u);
+  const auto warning = [&](std::size_t count) {
+    unrecorded.resize(count);
+    ::testing::internal::CaptureStderr();
+    for_resimulation(archive, experiment_, unrecorded, "elsewhere");
+    return ::testing::internal::GetCapturedStderr();
+  };
+  EXPECT_THAT(warning(7), testing::naming(std::to_string(unrecorded[4]->id) + " and 2 others were"));
+  EXPECT_THAT(warning(6), testing::naming(std::to_string(unrecorded[5]->id) + " were")) << "one more is no longer";
+}
+
 TEST_F(GoneOn, WithAnotherOperatorWarnsToo) {
   Experiment second = run_of_60();
   second.selection = std::make_unique<Levelling>();

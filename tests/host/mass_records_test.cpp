@@ -78,6 +78,29 @@ TEST(MassRecords, ABodyThatLandsHalfwayTouchesTheGroundForHalfOfTheCycle) {
   for (const double share : contact[0]) EXPECT_NEAR(share, 0.5, 0.01);
 }
 
+TEST(NewMasses, MayNotLieBelowTheFloor) {
+  std::vector<double> lowest, allowed;
+  const auto seen_with = [&](const std::function<void(Scene&)>& set) {
+    lowest.clear(), allowed.clear();
+    Experiment experiment = with({Told({}, [&](const DevoContext& context, Edits&) {
+      lowest.push_back(bounding_box(context.state.position).low.z);
+      allowed.push_back(context.bounds.low.z);
+    })});
+    set(experiment.scene);
+    matured(experiment);
+    EXPECT_EQ(lowest.size(), 2u);
+  };
+  seen_with([](Scene& scene) { scene.floor->stiffness = 100; });  // the body sinks into it
+  EXPECT_LT(lowest.at(1), -1e-3);
+  EXPECT_THAT(allowed, ElementsAre(0, 0));
+  seen_with([](Scene& scene) { scene.floor->stiffness = 1e4, scene.floor->roughness = 0.1; });
+  EXPECT_LT(lowest.at(1), 0.1);
+  EXPECT_THAT(allowed, ElementsAre(0.1, 0.1)) << "the height of the highest hill";
+  seen_with([](Scene& scene) { scene.floor.reset(), scene.friction.reset(); });
+  EXPECT_LT(lowest.at(1), -1e-3) << "it falls";
+  EXPECT_EQ(allowed, lowest);
+}
+
 TEST(MassRecords, SkipShiftCountsContactToo) {
   const auto contact = [](const char* probe) {
     std::vector<std::vector<double>> seen;

@@ -521,7 +521,10 @@ TEST(Gallery, KnowsTheMaterialsOfPointsBeforeTheyAreABody) {
   ASSERT_EQ(run["robots"].size(), 3u);
   for (const auto& robot : run["robots"]) {
     ASSERT_EQ(robot["status"], "ok") << robot["reason"];
-    EXPECT_EQ(robot["film"]["shots"].size(), 2u);
+    const auto& shots = robot["film"]["shots"];
+    ASSERT_EQ(shots.size(), 2u);
+    EXPECT_EQ(shots[0]["times"].front(), 0.0);
+    EXPECT_EQ(shots[0]["times"].back(), shots[1]["times"].front()) << "until they are where they become one";
     const auto of_masses = unpacked(robot["film"]["mass_materials"]);
     ASSERT_EQ(of_masses.size(), 21u);
     for (const std::int64_t material : of_masses)
