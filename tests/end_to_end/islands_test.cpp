@@ -66,6 +66,19 @@ TEST_F(IslandCommands, ContinueOnlyTheWholeRun) {
   const Finished without = evodevo({"resume", run_});
   EXPECT_EQ(without.exit_code, 2);
   EXPECT_THAT(without.output, naming(second_, "3 islands"));
+  EXPECT_EQ(begin({"--resume"}).exit_code, 2) << "the other islands have generations";
+}
+
+TEST_F(IslandCommands, BeginAgainWhatEndedWhileItWasCreated) {
+  ASSERT_EQ(begin().exit_code, 0);
+  const fs::path straight = scratch_ / "straight";
+  fs::rename(run_, straight);
+  { Archive::create(fs::path(run_) / "island-1", testing::read_islands(scratch_, testing::small_islands)[0], "cpu"); }
+  fs::create_directory(second_);
+  std::ofstream(second_ + "/run.sqlite") << "";
+  const Finished finished = begin({"--resume"});
+  EXPECT_EQ(finished.exit_code, 0) << finished.output;
+  testing::expect_same_islands(straight, run_);
 }
 
 TEST_F(IslandCommands, CheckShowsWhoSendsToWhom) {

@@ -244,6 +244,37 @@ TEST_F(ArchiveStorage, EveryErrorOfSQLiteNamesTheFolderAndARemedy) {
   EXPECT_EQ(failures, 3) << "a full disk, errors of storage, and memory";
 }
 
+/// What a process leaves that is killed while it creates an archive.
+TEST_F(ArchiveStorage, ARunThatStoredNothingCanBeBegunAgain) {
+  for (const Journal journal : {Journal::wal, Journal::rollback}) {
+    SCOPED_TRACE(name(journal));
+    fs::create_directories(folder_);
+    for (const char* left : {"lock", "run.sqlite", "run.sqlite-journal", "run.sqlite-wal"})
+      std::ofstream(folder_ / left) << "";
+    EXPECT_FALSE(is_begun(folder_));
+    Archive archive = created(journal);
+    EXPECT_TRUE(is_begun(folder_));
+    commit(archive, 0);
+    EXPECT_EQ(generations(), 1u);
+    fs::remove_all(folder_);
+  }
+}
+
+TEST_F(ArchiveStorage, WhatMayHoldGenerationsIsNotBegunAgain) {
+  const auto refused = [&] {
+    EXPECT_THAT(refusal<ArchiveError>([&] { created(); }), testing::at_place(folder_.string() + ": ", "--out"));
+  };
+  { created(); }
+  refused();
+  fs::rename(file_, log_);  // a log whose file is gone
+  refused();
+  std::ofstream(file_) << std::string(5000, 'x');
+  refused();
+  fs::remove(file_);
+  fs::create_directory(file_);
+  refused();
+}
+
 TEST_F(ArchiveStorage, WhatIsNoRunIsRefusedWithTheFolder) {
   const auto refused = [&] {
     std::vector<std::string> said;

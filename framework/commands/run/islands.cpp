@@ -11,6 +11,7 @@
 #include "commands/run/islands_progress.hpp"
 #include "commands/run/page.hpp"
 #include "commands/run/progress.hpp"
+#include "commands/run/run_options.hpp"
 #include "commands/shell/builds.hpp"
 #include "commands/shell/notices.hpp"
 #include "commands/shell/verification_report.hpp"
@@ -71,6 +72,12 @@ void print_best(const Islands& islands) {
     print_best(islands.experiments[best.front().island], islands.archives[best.front().island]);
 }
 
+std::pair<Archive, Experiment> reopened_island(const fs::path& folder, const Given& given, const Experiment* expected) {
+  auto island = reopened(folder, given, expected);
+  if (!given.contains("allow-other-versions")) refuse_other_versions(island.second, island.first);
+  return island;
+}
+
 void finish(Islands& islands, Simulator& simulator, const RunOutput& output) {
   verify_best_of_all(islands, simulator,
                      begin_ending(islands.experiments.front(), output, resume_command_for(islands.folder)));
@@ -84,11 +91,14 @@ void finish(Islands& islands, Simulator& simulator, const RunOutput& output) {
 }  // namespace
 
 Islands created_islands(const fs::path& folder, std::vector<Experiment> experiments, const std::string& device,
-                        std::optional<Journal> journal) {
-  begin_run_folder(folder);
+                        const Given& given) {
+  if (!is_half_created(folder, static_cast<std::int64_t>(experiments.size()))) begin_run_folder(folder);
   Islands islands{folder, std::move(experiments), {}};
-  for (const Experiment& island : islands.experiments)
-    islands.archives.push_back(Archive::create(island_folder(folder, island.island), island, device, journal));
+  for (const Experiment& island : islands.experiments) {
+    const fs::path own = island_folder(folder, island.island);
+    islands.archives.push_back(is_begun(own) ? reopened_island(own, given, &island).first
+                                             : Archive::create(own, island, device, given_journal(given)));
+  }
   return islands;
 }
 
@@ -113,10 +123,9 @@ Islands reopened_islands(const fs::path& folder, const Given& given, const std::
                        " islands, but the experiment asks for " + std::to_string(expected->size()) +
                        "; give the experiment of the run, or another --out");
   for (std::size_t i = 0; i < folders.size(); ++i) {
-    auto [archive, experiment] = reopened(folders[i], given, expected ? &(*expected)[i] : nullptr);
+    auto [archive, experiment] = reopened_island(folders[i], given, expected ? &(*expected)[i] : nullptr);
     if (archive.island() != static_cast<std::int64_t>(i) + 1)
       archive.refuse("it is island " + std::to_string(archive.island()) + " of a run; name its folder after that");
-    if (!given.contains("allow-other-versions")) refuse_other_versions(experiment, archive);
     islands.archives.push_back(std::move(archive));
     islands.experiments.push_back(std::move(experiment));
   }

@@ -20,9 +20,10 @@ struct Islands {
   std::vector<Archive> archives;
 };
 
-/// Begins the archives of a run with islands in a folder. Throws ArchiveError if the folder exists and is not empty.
+/// Begins the archives of a run with islands in a folder, or those that are missing if it is half created. Throws
+/// ArchiveError if begin_run_folder() does.
 Islands created_islands(const std::filesystem::path& folder, std::vector<Experiment> experiments,
-                        const std::string& device, std::optional<Journal> journal);
+                        const std::string& device, const Given& given);
 
 /// Opens the archives of a run with islands to continue it, like reopened(). `expected` has the experiments of its
 /// islands if the user names them, and is otherwise null.

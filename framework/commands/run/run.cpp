@@ -220,7 +220,7 @@ int evolve_and_report(Islands islands, Simulator& simulator, const Ranks& ranks,
 int begin(const Ranks& ranks, const std::string& file, std::vector<Experiment> islands, const Given& given,
           TimeLimit* limit) {
   Experiment& experiment = islands.front();
-  const std::optional<Journal> journal = given_journal(given);
+  given_journal(given);  // so that a wrong one is reported before anything is written
   const std::unique_ptr<GenerationLog> log = given_log(given, experiment, files_of_experiment(file, experiment));
   founders(experiment);  // so that a wrong start is reported before anything is written
   print_warnings(experiment);
@@ -231,9 +231,9 @@ int begin(const Ranks& ranks, const std::string& file, std::vector<Experiment> i
   const fs::path folder =
       given.contains("out") ? fs::path(given["out"].as<std::string>()) : new_run_folder(experiment.name);
   if (islands.size() > 1)
-    return evolve_and_report(created_islands(folder, std::move(islands), simulator->device(), journal), *simulator,
-                             ranks, given, output_of(given, log.get(), limit));
-  Archive archive = Archive::create(folder, experiment, simulator->device(), journal);
+    return evolve_and_report(created_islands(folder, std::move(islands), simulator->device(), given), *simulator, ranks,
+                             given, output_of(given, log.get(), limit));
+  Archive archive = Archive::create(folder, experiment, simulator->device(), given_journal(given));
   return evolve_and_report(experiment, *simulator, archive, farm.get(), output_of(given, log.get(), limit));
 }
 
@@ -292,13 +292,13 @@ int go_on(const Ranks& ranks, const fs::path& folder, const Given& given, TimeLi
   return evolve_and_report(experiment, *simulator, archive, farm.get(), output_of(given, log.get(), limit));
 }
 
-/// Whether --resume is given and the folder of --out holds a run. Throws UsageError for --resume without --out.
-bool is_to_go_on(const Given& given) {
+/// Whether --resume is given and the folder of --out holds a run, with `islands` islands. Throws UsageError for
+/// --resume without --out.
+bool is_to_go_on(const Given& given, std::size_t islands) {
   if (!given.contains("resume")) return false;
   if (!given.contains("out")) throw UsageError("--resume: give the folder of the run with --out");
   const fs::path folder = given["out"].as<std::string>();
-  std::error_code error;
-  return has_islands(folder) || fs::exists(folder / database_name, error);
+  return has_islands(folder) ? !is_half_created(folder, static_cast<std::int64_t>(islands)) : is_begun(folder);
 }
 
 int run(const Given& given) {
@@ -307,9 +307,8 @@ int run(const Given& given) {
   if (served(ranks, given)) return 0;
   const auto file = given["EXPERIMENT.toml"].as<std::string>();
   const std::unique_ptr<TimeLimit> limit = given_limit(given);
-  const bool goes_on = is_to_go_on(given);
   std::vector<Experiment> islands = given_islands(file, given);
-  if (!goes_on) return begin(ranks, file, std::move(islands), given, limit.get());
+  if (!is_to_go_on(given, islands.size())) return begin(ranks, file, std::move(islands), given, limit.get());
   remember_folders_of(islands.front());
   return go_on(ranks, given["out"].as<std::string>(), given, limit.get(), &islands);
 }

@@ -1,5 +1,6 @@
 #include "evolution/archive/archive.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 #include <fstream>
@@ -41,11 +42,19 @@ file_lock locked(const fs::path& folder) try {
                      "); choose a folder on a file system that can lock files");
 }
 
+/// Throws ArchiveError if the folder has anything in it but what a process leaves that ends while it creates an
+/// archive. A log or journal whose run.sqlite is gone is no such thing: there may be generations in it.
 void require_empty(const fs::path& folder) {
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-    if (entry.path().filename() != lock_name)
-      throw ArchiveError(folder.string() + ": is not empty; give another --out, or continue the run in it with `" +
-                         program_name() + " resume " + folder.string() + "`");
+  std::error_code error;
+  const bool is_unfinished = fs::is_regular_file(folder / database_name, error) && !is_begun(folder);
+  const fs::directory_iterator entries(folder);
+  const auto may_stay = [&](const fs::directory_entry& entry) {
+    const std::string name = entry.path().filename().string();
+    return name == lock_name || (is_unfinished && name.starts_with(database_name));
+  };
+  if (!std::all_of(begin(entries), end(entries), may_stay))
+    throw ArchiveError(folder.string() + ": is not empty; give another --out, or continue the run in it with `" +
+                       program_name() + " resume " + folder.string() + "`");
 }
 
 /// Throws ArchiveError unless the run's file in the folder is a regular file. Opening anything else, such as a pipe,
@@ -77,6 +86,18 @@ bool has_islands(const fs::path& folder) {
   std::error_code error;
   return !fs::exists(folder / database_name, error) &&
          fs::is_directory(folder / (std::string(island_folder_prefix) + "1"), error);
+}
+
+bool is_begun(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::is_regular_file(folder / database_name, error)) return false;
+  try {
+    const RunDatabase run(folder, SQLite::OPEN_READWRITE, std::nullopt);
+    run.sqlite().setBusyTimeout(0);  // does not wait for a process that is writing the run
+    return has_tables(run);
+  } catch (const std::runtime_error&) {
+    return true;  // it holds something; whoever opens it says why it cannot be used
+  }
 }
 
 Archive::Archive(std::unique_ptr<RunDatabase> run) : run_(std::move(run)) {}

@@ -22,7 +22,11 @@ class RunDatabase;
 inline constexpr const char* island_folder_prefix = "island-";
 /// Returns whether a folder holds folders of islands, and so no archive itself.
 bool has_islands(const std::filesystem::path& folder);
-/// Makes the folder of a new run. Throws ArchiveError if it exists and is not empty.
+/// Returns whether a folder holds an archive to which something was committed. It does not if a process ended while it
+/// created the archive.
+bool is_begun(const std::filesystem::path& folder);
+/// Makes the folder of a new run. Throws ArchiveError if it exists and has anything in it, except what is left of an
+/// archive that was not begun.
 void begin_run_folder(const std::filesystem::path& folder);
 
 /// An individual with the generation in which it was dropped.
@@ -93,7 +97,7 @@ struct Failure {
 class Archive {
  public:
   /// Starts the archive of a new run. The first provenance is that of this program on `device`. Throws ArchiveError if
-  /// the folder exists and is not empty. `journal` applies to the whole run; by default, it depends on the folder's
+  /// begin_run_folder() does. `journal` applies to the whole run; by default, it depends on the folder's
   /// file system.
   static Archive create(const std::filesystem::path& folder, const Experiment& experiment, const std::string& device,
                         std::optional<Journal> journal = std::nullopt);

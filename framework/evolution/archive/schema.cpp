@@ -125,9 +125,12 @@ void check_format(const RunDatabase& run) {
 
 void create_tables(RunDatabase& run) { run.execute(schema); }
 
+bool has_tables(const RunDatabase& run) {
+  return run.guarded([&] { return !things_in(run.sqlite()).empty(); });
+}
+
 void check_tables(const RunDatabase& run) {
   const Things here = run.guarded([&] { return things_in(run.sqlite()); });
-  // Archive::create() writes the tables in one transaction, so nothing was ever committed to a file without tables.
   if (here.empty())
     throw ArchiveError(run.folder().string() + ": the run in it ended before it stored anything; if there was a " +
                        database_name + "-wal beside " + database_name +

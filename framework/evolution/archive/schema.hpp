@@ -11,6 +11,9 @@ inline constexpr const char* archive_format = "13";
 
 void create_tables(RunDatabase& run);
 
+/// Whether anything was ever committed to the file: Archive::create() writes the tables in one transaction.
+bool has_tables(const RunDatabase& run);
+
 /// Throws ArchiveError if the file holds no run, a run in another format, or tables that differ from those of a run.
 /// The check also prevents a file from elsewhere from executing its own code, for example through views in place of
 /// tables.

@@ -19,9 +19,22 @@ std::vector<fs::path> island_folders(const fs::path& run) {
     folders.push_back(island_folder(run, island));
     if (std::error_code error; !fs::is_directory(folders.back(), error))
       throw ArchiveError(folders.back().string() + ": is missing, but the run has " + std::to_string(count) +
-                         " islands; put the folder back, or begin the run again in another folder");
+                         " islands; put the folder back, or begin the run again, in another folder or, if it has no "
+                         "generation yet, in this one");
   }
   return folders;
+}
+
+bool is_half_created(const fs::path& run, std::int64_t count) {
+  bool lacks_one = false;
+  for (std::int64_t island = 1; island <= count; ++island) {
+    const fs::path folder = island_folder(run, island);
+    if (!is_begun(folder))
+      lacks_one = true;
+    else if (!Archive::read(folder).generations().empty())
+      return false;
+  }
+  return has_islands(run) && lacks_one;
 }
 
 std::vector<fs::path> archive_folders(const fs::path& run) {

@@ -16,6 +16,10 @@ std::filesystem::path island_folder(const std::filesystem::path& run, std::int64
 /// is no run with islands. Throws ArchiveError if folders of islands are missing.
 std::vector<std::filesystem::path> island_folders(const std::filesystem::path& run);
 
+/// Whether a process ended while it created the archives of a run with `count` islands: some are not begun, and those
+/// that are hold no generation.
+bool is_half_created(const std::filesystem::path& run, std::int64_t count);
+
 /// Returns the folders in which there are archives: those of the islands of the run in a folder, or else the folder.
 std::vector<std::filesystem::path> archive_folders(const std::filesystem::path& run);
 
