@@ -1,5 +1,8 @@
 #include "evolution/archive/archive.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 #include <ctime>
@@ -27,6 +30,17 @@ std::string utc_now() {
   char text[32];
   std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
   return text;
+}
+
+/// Makes sure that a folder is still there after a loss of power, and so the folders above it, which may be new as
+/// well. Where folders cannot be synchronised, nothing can be done about it.
+void synchronise_entry_of(const fs::path& folder) {
+  for (fs::path path = fs::absolute(folder).lexically_normal(); path.has_relative_path(); path = path.parent_path()) {
+    const int above = open(path.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (above < 0) continue;
+    fsync(above);
+    close(above);
+  }
 }
 
 file_lock locked(const fs::path& folder) try {
@@ -110,6 +124,7 @@ void begin_run_folder(const fs::path& folder) {
   if (error)
     throw ArchiveError(folder.string() + ": cannot be created: " + error.message() + "; give another place with --out");
   require_empty(folder);
+  synchronise_entry_of(folder);
 }
 
 Archive Archive::create(const fs::path& folder, const Experiment& experiment, const std::string& device,
