@@ -16,6 +16,7 @@ from .outcomes import Record
 from .page import page
 from .planted import Planted
 from .soak import Soak
+from .storage import Storage
 from .workshop import Workshop
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
@@ -34,7 +35,13 @@ def sit(given, program):
 
 def parts(program, folder):
     operators, laws = listed_operators(program), Laws(program, folder.resolve() / "experiments")
-    return [Experiments(operators, laws, folder), Fuzz(built_targets(), operators, folder), Soak(program, folder)]
+    faults = pathlib.Path(program).resolve().parents[1] / "lib" / "faults.so"
+    return [
+        Experiments(operators, laws, folder),
+        Fuzz(built_targets(), operators, folder),
+        Soak(program, folder),
+        Storage(program, faults, folder),
+    ]
 
 
 def built_targets():

@@ -149,6 +149,8 @@ def rows_of(folder):
 
 def same_rows(one, other, how):
     first, second = rows_of(one), rows_of(other)
+    if first.keys() != second.keys():
+        raise Broken(f"{how}: the tables differ: {sorted(first)} and {sorted(second)}")
     for table in first:
         if first[table] != second[table]:
             pairs = zip(first[table], second[table])
