@@ -100,6 +100,7 @@ TEST(EqualDevices, ThatAreMissingOrDifferAreRefused) {
 TEST(Device, ThatIsHiddenIsMissed) {
   ::setenv("CUDA_VISIBLE_DEVICES", "-1", 1);
   EXPECT_THAT(why_cuda_is_unusable(), testing::AnyOf(HasSubstr("CUDA_VISIBLE_DEVICES"), HasSubstr("NVIDIA driver")));
+  EXPECT_TRUE(sees_no_gpu());
 }
 
 }  // namespace

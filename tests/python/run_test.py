@@ -194,7 +194,7 @@ class OfASmallRun(unittest.TestCase):
 
         root = Path(__file__).resolve().parents[2]
         schema = (root / "framework/evolution/archive/README.md").read_text(encoding="utf-8")
-        self.assertIn(f"this page describes format {module.FORMAT}.", schema)
+        self.assertIn(f"this page describes format {module.FORMAT}.", " ".join(schema.split()))
         self.assertEqual(call("--version").split()[1], evodevo.__version__)
         self.assertIn(f'version = "{evodevo.__version__}"',
                       (root / "tools/python/pyproject.toml").read_text(encoding="utf-8"))

@@ -50,4 +50,7 @@ std::vector<int> equal_gpus();
 /// Returns the reason why make_cuda_group() cannot use these GPUs; empty if it can.
 std::string why_cuda_is_unusable(std::span<const int> numbers = {});
 
+/// Whether this process sees no GPU, rather than one that it cannot use.
+bool sees_no_gpu();
+
 }  // namespace evodevo

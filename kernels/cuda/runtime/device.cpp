@@ -135,4 +135,11 @@ std::string why_cuda_is_unusable(std::span<const int> numbers) {
   }
 }
 
+bool sees_no_gpu() {
+  int driver = 0, count = 0;
+  if (cudaDriverGetVersion(&driver) == cudaSuccess && driver == 0) return true;
+  const cudaError_t found = cudaGetDeviceCount(&count);
+  return found == cudaErrorNoDevice || found == cudaErrorStubLibrary || (found == cudaSuccess && count == 0);
+}
+
 }  // namespace evodevo
