@@ -2,6 +2,10 @@
 
 import subprocess
 
+# Open MPI refuses to work for root, or to start more processes than cores, unless it is told
+AS_ROOT = ("env", "OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1")
+RANKS = (*AS_ROOT, "mpirun", "--oversubscribe", "--bind-to", "none", "-n")
+
 
 class Broken(Exception):
     """A law that does not hold, with what shows it."""
@@ -13,7 +17,7 @@ class Program:
     def __init__(self, path, seconds):
         self.path, self.seconds = path, seconds
 
-    def __call__(self, *words, under=(), env=None):
+    def __call__(self, *words, under=()):
         """Returns how a command ended. `under` is the command that starts it, such as a launcher of MPI."""
         command = [*under, self.path, *words]
         try:
@@ -23,7 +27,6 @@ class Program:
                 text=True,
                 timeout=self.seconds,
                 stdin=subprocess.DEVNULL,
-                env=env,
             )
         except subprocess.TimeoutExpired:
             raise Broken(f"{words[0]}: not done after {self.seconds} s") from None

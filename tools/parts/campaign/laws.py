@@ -3,7 +3,6 @@
 import contextlib
 import json
 import math
-import os
 import pathlib
 import shutil
 import signal
@@ -12,7 +11,7 @@ import subprocess
 import tomllib
 
 from .amounts import keeps_amounts
-from .calls import Broken, Program, require
+from .calls import RANKS, Broken, Program, require
 from .rounding import float_is_near_double
 from .run_page import Page
 
@@ -79,10 +78,7 @@ class Laws:
 
     def _is_same_with_ranks(self, file, one):
         ranks = self._folder / "ranks"
-        # Open MPI refuses to work for root unless it is told
-        env = os.environ | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
-        launcher = ("mpirun", "--oversubscribe", "--bind-to", "none", "-n", "3")
-        require(self._evodevo("run", file, *made(ranks, 1), under=launcher, env=env), "run with 3 ranks")
+        require(self._evodevo("run", file, *made(ranks, 1), under=(*RANKS, 3)), "run with 3 ranks")
         same_rows(one, ranks, "with 3 ranks instead of 1")
 
     def run_in_parts(self, file, folder):

@@ -10,7 +10,7 @@ import sqlite3
 
 from common.command_line import Failure
 
-from .calls import Broken, require
+from .calls import RANKS, Broken, require
 from .failing_calls import Fault
 from .laws import made, same_rows
 
@@ -59,11 +59,6 @@ ISLANDS = """
 count = 2
 every = 2
 """
-
-
-# Open MPI refuses to work for root, or to start more processes than cores, unless it is told
-AS_ROOT = ("env", "OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1")
-RANKS = (*AS_ROOT, "mpirun", "--oversubscribe", "--bind-to", "none", "-n")
 
 
 @dataclasses.dataclass(frozen=True)
