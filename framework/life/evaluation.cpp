@@ -11,9 +11,14 @@
 namespace evodevo {
 namespace {
 
-// smallest number of bodies in a cohort if there are several: fewer would not repay the overhead of a batch. Cohorts of
-// a small population leave a device partly idle anyway, and while some are simulated, others develop.
-constexpr std::size_t smallest_cohort = 12;
+/// The number of cohorts for so many newborns, of at most `most` that a simulator takes at once. While some cohorts are
+/// simulated, others develop. A quarter of them may be small, because a small population leaves a device partly idle
+/// anyway; if there are more, each should be large enough to keep it busy. With fewer bodies, a cohort would not repay
+/// the overhead of a batch.
+std::size_t cohorts_for(std::size_t newborns, std::size_t most) {
+  constexpr std::size_t smallest = 12, large = 64;
+  return std::clamp<std::size_t>(std::max(std::min(newborns / smallest, most / 4), newborns / large), 1, most);
+}
 
 }  // namespace
 
@@ -30,8 +35,8 @@ Evaluation::Evaluation(const Experiment& experiment, Simulator& simulator, const
       developing_scenarios_(scenarios_that_develop(experiment)) {}
 
 std::vector<Result> Evaluation::evaluate(std::span<const Newborn> newborns, const Progress& progress) const {
-  const std::size_t cohorts = std::clamp<std::size_t>(newborns.size() / smallest_cohort, 1,
-                                                      static_cast<std::size_t>(simulation.simulator().concurrency()));
+  const std::size_t cohorts =
+      cohorts_for(newborns.size(), static_cast<std::size_t>(simulation.simulator().concurrency()));
   const auto begin = [&](std::size_t cohort) { return cohort * newborns.size() / cohorts; };
   std::vector<Result> results(newborns.size());
   std::vector<std::shared_ptr<const void>> announced;  // of each cohort until it has ended

@@ -1,7 +1,6 @@
 #include "life/verification.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <stdexcept>
@@ -108,6 +107,21 @@ std::vector<Verification> verifications(std::span<const Champion> champions, std
   return verifications;
 }
 
+/// Repeats final evaluations, and returns a trial for each champion.
+using Repeat = std::function<std::vector<Trial>()>;
+
+/// Makes several repetitions at the same time, since that of a single champion keeps no device busy. Returns the trials
+/// of each.
+std::vector<std::vector<Trial>> at_once(const std::vector<Repeat>& repeats) {
+  std::vector<std::vector<Trial>> trials(repeats.size());
+  const int priority_of_caller = Priority::of_this_thread();
+  on_own_threads(repeats.size(), [&](std::size_t i) {
+    const Priority priority(priority_of_caller);
+    trials[i] = repeats[i]();
+  });
+  return trials;
+}
+
 /// Makes simulators in double precision: on the CPU, or on the experiment's device.
 ExactSimulators exact_simulators_on(bool cpu, const Experiment& experiment) {
   const auto simulator = [&](Method method) {
@@ -137,16 +151,19 @@ std::vector<Verification> verify(const Experiment& experiment, Simulator& simula
   const ExactSimulators exact = exact_simulators_on(true, experiment);
   const Evaluation run(experiment, simulator);
   const Repetition repetition(experiment, matured(run, champions));
-  std::vector<std::vector<Trial>> trials;
-  trials.push_back(repetition.with("again", simulator, repetition.as_in_the_run(), [](Life&) {}));
-  trials.push_back(repetition.quarter_step(*exact.same_method));
-  trials.push_back(repetition.other_step(*exact.other_method));
-  for (std::uint32_t i = 0; i < perturbed_starts; ++i)
-    trials.push_back(repetition.with("perturbed-" + std::to_string(i + 1), simulator, repetition.as_in_the_run(),
-                                     [&](Life& life) { perturb(life, experiment, i); }));
-  trials.push_back(repetition.no_muscles(simulator));
-  trials.push_back(repetition.settled(simulator));
-  return verifications(champions, std::move(trials));
+  std::vector<Repeat> repeats = {
+      [&] { return repetition.with("again", simulator, repetition.as_in_the_run(), [](Life&) {}); },
+      [&] { return repetition.quarter_step(*exact.same_method); },
+      [&] { return repetition.other_step(*exact.other_method); },
+  };
+  for (std::uint32_t start = 0; start < perturbed_starts; ++start)
+    repeats.push_back([&, start] {
+      return repetition.with("perturbed-" + std::to_string(start + 1), simulator, repetition.as_in_the_run(),
+                             [&](Life& life) { perturb(life, experiment, start); });
+    });
+  repeats.push_back([&] { return repetition.no_muscles(simulator); });
+  repeats.push_back([&] { return repetition.settled(simulator); });
+  return verifications(champions, at_once(repeats));
 }
 
 ExactSimulators exact_simulators(const Experiment& experiment, const Simulator& simulator) {
@@ -162,19 +179,12 @@ std::vector<Verification> verify_marks(const Experiment& experiment, Simulator& 
                                        std::span<const Champion> champions) {
   const Evaluation run(experiment, simulator);
   const Repetition repetition(experiment, matured(run, champions));
-  const std::array<std::function<std::vector<Trial>()>, 4> repeat = {
-      [&] { return repetition.quarter_step(*exact.same_method); },
-      [&] { return repetition.other_step(*exact.other_method); },
-      [&] { return repetition.no_muscles(simulator); },
-      [&] { return repetition.settled(simulator); },
-  };
-  std::vector<std::vector<Trial>> trials(repeat.size());
-  const int priority_of_caller = Priority::of_this_thread();
-  on_own_threads(repeat.size(), [&](std::size_t i) {
-    const Priority priority(priority_of_caller);
-    trials[i] = repeat[i]();
-  });
-  return verifications(champions, std::move(trials));
+  return verifications(champions, at_once({
+                                      [&] { return repetition.quarter_step(*exact.same_method); },
+                                      [&] { return repetition.other_step(*exact.other_method); },
+                                      [&] { return repetition.no_muscles(simulator); },
+                                      [&] { return repetition.settled(simulator); },
+                                  }));
 }
 
 bool held(const Verification& verification, const Trial& trial, bool maximise) {

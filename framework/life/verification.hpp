@@ -56,14 +56,14 @@ ExactSimulators exact_simulators(const Experiment& experiment, const Simulator& 
 ///   perturbed-1   to -3: each mass moved along each axis at random by up to 1e-4 of the body's longest side;
 ///   no-muscles    with muscles that are not actuated;
 ///   settled       with windows that open 10 s later.
-/// quarter-step and other-method run on the CPU, so that they are independent of a GPU. Results on the same device are
-/// the same every time.
+/// quarter-step and other-method run on the CPU, so that they are independent of a GPU. All trials run at the same
+/// time. Results on the same device are the same every time.
 std::vector<Verification> verify(const Experiment& experiment, Simulator& simulator,
                                  std::span<const Champion> champions);
 
 /// Like verify(), but only with the trials on which marks() depends: quarter-step, other-method, no-muscles and
 /// settled. The first two run on `exact`. They have many short steps; on a CPU, they would take far longer than a GPU
-/// needs for all evaluations of a generation. The four trials run at the same time.
+/// needs for all evaluations of a generation.
 std::vector<Verification> verify_marks(const Experiment& experiment, Simulator& simulator, const ExactSimulators& exact,
                                        std::span<const Champion> champions);
 

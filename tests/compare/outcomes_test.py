@@ -2,6 +2,7 @@
 
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -32,20 +33,31 @@ class Outcomes(unittest.TestCase):
         self.assertEqual(self.compare().returncode, 0)
         done = self.measure("--jobs", "3")
         self.assertEqual(done.returncode, 0, done.stderr)
-        scenes, slope = done.stdout.split("## Distance on a slope")
+        scenes, slope, bodies, line = re.split(r"(?m)^## .*\n", done.stdout)[1:]
         scenarios = re.findall(r'(?m)^name = "(.*)"', (SCRIPT.parent / "scenarios.txt").read_text())
         self.assertGreater(len(scenarios), 5)
         self.assertIn(f"|  | runs | {' | '.join(scenarios)} |", scenes)
-        self.assertIn("after 5 evaluations | after 20 evaluations | after 60 evaluations", slope)
+        self.assertIn("after 5 evaluations | after 10 evaluations | after 20 evaluations", slope)
         for text in (scenes, slope):
-            cells = {row[0]: row[1:] for row in re.findall(r"(?m)^\| `(plain|developing)` \| 2 \| (.*) \|$", text)}
-            self.assertEqual(cells.keys(), {"plain", "developing"})
-            self.assertNotEqual(cells["plain"], cells["developing"])
+            plain, developing = self.cells(text)
+            self.assertNotEqual(plain, developing)
+        (at_birth, matured), (_, developed) = self.cells(bodies)
+        self.assertGreater(at_birth, 0)
+        self.assertEqual(at_birth, matured)
+        self.assertNotEqual(at_birth, developed)
+        for began, born in self.cells(line):
+            self.assertTrue(0 <= began <= born <= 100, (began, born))
         files = {file: file.stat().st_mtime_ns for file in (self.folder / "out" / "outcomes" / "rows").rglob("*.json")}
-        self.assertEqual(len(files), 2 * 2 * (3 + 1))  # arms, runs, lives in the scenarios and the slope
+        self.assertEqual(len(files), 2 * 2 * (3 + 1 + 1))  # arms, runs; lives in the scenarios, the slope, bodies
+        shutil.rmtree(self.folder / "out" / "runs")
         again = self.measure()
         self.assertEqual(again.stdout, done.stdout)
         self.assertEqual({file: file.stat().st_mtime_ns for file in files}, files)
+
+    def cells(self, text):
+        """Returns the medians in the lines of both arms."""
+        lines = dict(re.findall(r"(?m)^\| `(plain|developing)` \| 2 \| (.*) \|$", text))
+        return [[float(cell.split()[0]) for cell in lines[arm].split(" | ")] for arm in ("plain", "developing")]
 
     def test_a_folder_without_runs_is_refused(self):
         done = self.measure()

@@ -1,20 +1,22 @@
 #!/usr/bin/env python3
-r"""Measures what the plan of this study describes besides distance: how the best robots fare in other scenes, and how
-fast evolution goes on when it moves to another scene.
+r"""Measures what the plan of this study describes besides distance: how the best robots fare in other scenes, how fast
+evolution goes on when it moves to another scene, how much bodies differ, and when the line of the best robot began.
 
   tools/compare experiments/study/development/evo.toml experiments/study/development/evo-devo.toml --seeds 101..150 \
     --out runs/study
   EVODEVO_PROGRAM=build/cpu/bin/evodevo python3 experiments/study/development/outcomes.py runs/study
 
 The best robot of each run is born again, LIVES times with other random numbers, in the scenarios of scenarios.txt. The
-last population of each run goes on to evolve on a slope. Each measurement is a run of its own in the folder `outcomes`,
-whose row is kept in `outcomes/rows`; what has a row is not measured again. `--jobs N` makes N measurements at once.
-Prints medians over the runs with their intervals. Needs SciPy.
+last population of each run goes on to evolve on a slope. The bodies of BODIES robots of each last population are
+compared in pairs. Each result is kept in `outcomes/rows`, and what is there is not measured again, so that a run can be
+removed once it has been measured. `--jobs N` makes N measurements at once. Prints medians over the runs with their
+intervals. Needs SciPy.
 """
 
 import argparse
 import collections
 import concurrent.futures
+import contextlib
 import functools
 import itertools
 import json
@@ -22,9 +24,12 @@ import math
 import os
 import pathlib
 import queue
+import sqlite3
 import statistics
 import subprocess
 import sys
+
+from scipy import stats
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.append(str(HERE.parents[2] / "tools/parts"))
@@ -38,7 +43,8 @@ from compare.standings import median_with_interval, table  # noqa: E402
 LIVES = 3
 ALONE = ("population=1", "random_individuals=0", "evaluations=1", "verify=0")
 MOVE = "scene.gravity.slope=-10"  # degrees, uphill
-GENERATIONS = (1, 4, 12)  # after which the distance on the slope is told
+GENERATIONS = (1, 2, 4)  # after which the distance on the slope is told
+BODIES = 10  # of each population
 
 
 class Program:
@@ -59,9 +65,10 @@ class Program:
         finally:
             self._gpus.put(gpu)
 
-    def show(self, folder):
-        shown = subprocess.run([self._path, "show", folder, "--json"], check=True, capture_output=True, text=True)
-        return json.loads(shown.stdout)
+    def json(self, *words):
+        """Returns what a command prints."""
+        done = subprocess.run([self._path, *map(str, words)], check=True, capture_output=True, text=True)
+        return json.loads(done.stdout)
 
 
 def measured(program, out, name, experiment, settings, start, seed):
@@ -73,7 +80,7 @@ def measured(program, out, name, experiment, settings, start, seed):
         file.write_text(experiment)
         words = [word for setting in (*settings, f"experiment.start={start.resolve()}") for word in ("--set", setting)]
         program.run(file, *words, "--seed", seed, "--out", folder, "--resume", "--no-report", "--quiet")
-        rows.write(row, program.show(folder))
+        rows.write(row, program.json("show", folder, "--json"))
     return rows.read(row)
 
 
@@ -85,7 +92,7 @@ class Arm:
         self.name, self.experiment, self._settings = folder.name, made_from["experiment"], made_from["set"]
         self._rows = folder
         runs = folder.parents[1] / "runs" / folder.name
-        self.runs = [runs / file.stem for file in sorted(folder.glob("seed-*.json")) if (runs / file.stem).exists()]
+        self.runs = [runs / file.stem for file in sorted(folder.glob("seed-*.json"))]
 
     def row(self, run):
         return self._rows / f"{run.name}.json"
@@ -116,6 +123,58 @@ def on_the_slope(program, out, arm, run):
     return {f"after {count * population} evaluations": past.at("generations", count, "best") for count in GENERATIONS}
 
 
+def body_length(body):
+    positions = [mass["position"] for mass in body["masses"]]
+    return max(max(axis) - min(axis) for axis in zip(*positions))
+
+
+def radii(body):
+    """Returns the distances of the middles of all springs from the centre of mass, in body lengths: a description of a
+    body that does not depend on where it has gone and how it has turned."""
+    masses = body["masses"]
+    total = sum(mass["mass"] for mass in masses)
+    centre = [sum(mass["mass"] * mass["position"][axis] for mass in masses) / total for axis in range(3)]
+    places = [mass["position"] for mass in masses]
+    middles = ([(a + b) / 2 for a, b in zip(places[spring["a"]], places[spring["b"]])] for spring in body["springs"])
+    length = body_length(body)
+    return [math.dist(middle, centre) / length for middle in middles]
+
+
+def living(folder):
+    """Returns the ids of those in the last population that have a fitness."""
+    with contextlib.closing(sqlite3.connect(f"file:{folder / 'run.sqlite'}?mode=ro", uri=True)) as archive:
+        found = archive.execute("SELECT id FROM individuals WHERE died IS NULL AND status = 'ok' ORDER BY id")
+        return [number for (number,) in found]
+
+
+def between_bodies(program, out, arm, run):
+    """Returns the mean distance between the bodies of a population, at birth and matured: the Wasserstein distance
+    between their radii()."""
+    row = out / "rows" / "bodies" / arm.name / f"{run.name}.json"
+    if not row.exists():
+        ids = living(run)
+        chosen = ids[:: max(1, len(ids) // BODIES)][:BODIES]
+        distances = {}
+        for age, words in (("at birth", ()), ("matured", ("--matured",))):
+            bodies = [radii(program.json("body", run, "--individual", number, *words)) for number in chosen]
+            pairs = list(itertools.starmap(stats.wasserstein_distance, itertools.combinations(bodies, 2)))
+            distances[age] = statistics.fmean(pairs) if pairs else -math.inf
+        row.parent.mkdir(parents=True, exist_ok=True)
+        unfinished = row.with_suffix(".new")
+        unfinished.write_text(json.dumps(distances))
+        unfinished.replace(row)
+    return json.loads(row.read_text())
+
+
+def line_of_the_best(program, out, arm, run):
+    """Returns the shares of the run after which the oldest genes of its best robot began to evolve, and after which
+    that robot was born, %."""
+    shown = rows.read(arm.row(run))
+    best, last = shown["best"], len(shown["generations"]) - 1
+    generations = {"the line began": last - best["age"], "the robot was born": best["generation"]}
+    return {what: 100 * generation / last for what, generation in generations.items()}
+
+
 def report(title, of_arms):
     """Returns a table of medians over the runs. `of_arms`: for each arm a list with a dictionary for each run."""
     columns = list(dict.fromkeys(column for runs in of_arms.values() for run in runs for column in run))
@@ -127,6 +186,14 @@ def report(title, of_arms):
     return f"## {title}\n\n{table(['', 'runs', *columns], lines)}"
 
 
+OUTCOMES = (
+    ("Distance in other scenes", in_scenarios),
+    ("Distance on a slope to which evolution moved", on_the_slope),
+    ("Distance between the bodies of a population, in body lengths", between_bodies),
+    ("The line of the best robot, % of the run", line_of_the_best),
+)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=pathlib.Path, help="of the comparison, that is, --out of tools/compare")
@@ -135,7 +202,6 @@ def main():
     folder, out = given.folder, given.folder / "outcomes"
     program = Program(os.environ.get("EVODEVO_PROGRAM", "evodevo"), given.jobs)
     arms = [Arm(file.parent) for file in sorted(folder.glob("rows/*/made-from.json"))]
-    arms = [arm for arm in arms if arm.runs]
     if not arms:
         sys.exit(f"{folder}: has no complete runs; give the folder that tools/compare wrote, which holds rows/ and runs/")
     with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
@@ -144,9 +210,8 @@ def main():
             """Returns for each arm what is measured of its runs, each as soon as it is known."""
             return {arm.name: pool.map(functools.partial(measure, program, out, arm), arm.runs) for arm in arms}
 
-        begun = [begin(measure) for measure in (in_scenarios, on_the_slope)]
-        scenarios, slope = ({arm: list(runs) for arm, runs in of_arms.items()} for of_arms in begun)
-    text = "\n".join((report("Distance in other scenes", scenarios), report("Distance on a slope to which evolution moved", slope)))
+        begun = [(title, begin(measure)) for title, measure in OUTCOMES]
+        text = "\n".join(report(title, {arm: list(runs) for arm, runs in of_arms.items()}) for title, of_arms in begun)
     (out / "report.md").write_text(text)
     print(text)
 
