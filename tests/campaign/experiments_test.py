@@ -45,6 +45,8 @@ class Draws(unittest.TestCase):
             count(tables)
         missing = {each["name"] for each in operators} - set(named)
         self.assertEqual(missing, {"cloud"})  # which needs a file
+        on_gpu = Draw(operators, random.Random(7), "cuda").experiment()
+        self.assertEqual(on_gpu["simulation"]["device"], "cuda")
 
     def test_variants_lack_one_thing(self):
         tables = {"a": {"b": 1, "c": [2, 3]}, "d": [{"e": 4}, {"f": 5}]}
@@ -144,7 +146,7 @@ class Programs(unittest.TestCase):
 
     def test_motion_that_depends_on_precision(self):
         fault = 'case "$*" in simulate*=float*) set -- "$@" --set scene.gravity.acceleration=15 ;; esac'
-        self.assertRegex(self.broken(fault), "^precision: float differs from double by [0-9.e+]+ .* after 20 steps")
+        self.assertRegex(self.broken(fault), "^precision: float on cpu differs from double on cpu by [0-9.e+]+ .* after 20 steps")
 
     def test_pages_with_errors(self):
         self.needs("pages")

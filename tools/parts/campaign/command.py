@@ -9,6 +9,7 @@ import subprocess
 
 from common.command_line import Failure, ended
 
+from .bodies import Bodies, Sanitizers
 from .experiments import Experiments, listed_operators
 from .fuzz import Fuzz
 from .laws import Laws
@@ -30,17 +31,28 @@ def sit(given, program):
     if given.planted:
         campaign(0, given.out, [Planted(Workshop(ROOT, given.out / "planted"), given.out, given.planted)])
     else:
-        campaign(given.minutes * 60, given.out, parts(program, given.out))
+        all_parts = parts_on_gpu if given.gpu else parts
+        campaign(given.minutes * 60, given.out, all_parts(program, given.out))
 
 
 def parts(program, folder):
-    operators, laws = listed_operators(program), Laws(program, folder.resolve() / "experiments")
-    faults = pathlib.Path(program).resolve().parents[1] / "lib" / "faults.so"
+    operators, built = listed_operators(program), pathlib.Path(program).resolve().parents[1]
     return [
-        Experiments(operators, laws, folder),
+        Bodies(built / "bin" / "hostile_bodies", "cpu"),
+        Experiments(operators, Laws(program, folder.resolve() / "experiments"), folder),
         Fuzz(built_targets(), operators, folder),
         Soak(program, folder),
-        Storage(program, faults, folder),
+        Storage(program, built / "lib" / "faults.so", folder),
+    ]
+
+
+def parts_on_gpu(program, folder):
+    bodies = pathlib.Path(program).resolve().with_name("hostile_bodies")
+    laws = Laws(program, folder.resolve() / "experiments")
+    return [
+        Bodies(bodies, "cuda"),
+        Experiments(listed_operators(program), laws, folder, "cuda"),
+        Sanitizers(bodies, "cuda"),
     ]
 
 

@@ -33,8 +33,8 @@ class Experiments:
 
     name = "experiments"
 
-    def __init__(self, operators, laws, folder):
-        self._operators, self._laws = operators, laws
+    def __init__(self, operators, laws, folder, device="cpu"):
+        self._operators, self._laws, self._device = operators, laws, device
         self._found = folder.resolve() / "found"
 
     def sitting(self, seconds, past):
@@ -70,7 +70,7 @@ class Experiments:
 
     def _try(self, number, hold):
         """Returns whether an experiment was accepted, and the fault that it shows, if any. `hold` tries the laws."""
-        tables = Draw(self._operators, random.Random(number)).experiment()
+        tables = Draw(self._operators, random.Random(number), self._device).experiment()
         self._found.mkdir(parents=True, exist_ok=True)
         file = self._found / f"experiment-{number}.toml"
         accepted, law = self._broken(tables, file, hold)

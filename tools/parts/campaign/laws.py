@@ -12,7 +12,7 @@ import tomllib
 
 from .amounts import keeps_amounts
 from .calls import RANKS, Broken, Program, require
-from .rounding import float_is_near_double
+from .rounding import moves_as_in_double
 from .run_page import Page
 
 STOPPED = 130  # exit code of a run that was asked to stop
@@ -54,7 +54,7 @@ class Laws:
         if develops(file):
             keeps_amounts(self._evodevo, file, self._folder)
         if best:
-            float_is_near_double(self._evodevo, file, one, best["individual"], self._folder)
+            moves_as_in_double(self._evodevo, file, one, best["individual"], self._folder)
         return True
 
     def page_holds(self, file):

@@ -37,10 +37,11 @@ METHODS = ("paper-euler", "symplectic-euler", "velocity-verlet", "rk4", "implici
 
 
 class Draw:
-    """Draws from the operators that `evodevo operators --json` lists, with the random numbers of `random`."""
+    """Draws from the operators that `evodevo operators --json` lists, with the random numbers of `random`. `device`
+    simulates."""
 
-    def __init__(self, operators, random):
-        self._operators, self._random = operators, random
+    def __init__(self, operators, random, device="cpu"):
+        self._operators, self._random, self._device = operators, random, device
 
     def experiment(self):
         """Returns the tables of an experiment as dictionaries and lists."""
@@ -180,7 +181,7 @@ class Draw:
 
     def _simulation(self):
         random = self._random
-        simulation = {"device": "cpu", "precision": random.choice(("float", "double"))}
+        simulation = {"device": self._device, "precision": random.choice(("float", "double"))}
         if random.random() < 0.5:
             simulation["accuracy"] = random.choice(("paper", "fast", "balanced"))
         else:

@@ -1,4 +1,5 @@
-"""The law of precision: while rounding has not grown, a body moves in single precision as in double precision.
+"""The law of precision: while rounding has not grown, a body moves in single precision as in double precision, and on a
+GPU as on the CPU.
 
 How much rounding grows is measured: in double precision, the body is simulated once more from positions that have moved
 by as much as single precision rounds. A floor and friction are left out, where any difference can decide between two
@@ -15,15 +16,19 @@ import tomlkit
 from .calls import Broken, require
 
 DURATION = 0.01  # s
-UNIT = 2.0**-24  # of single precision: largest relative change of a number that is rounded
+UNITS = {"float": 2.0**-24, "double": 2.0**-53}  # largest relative change of a number that is rounded
+UNIT = UNITS["float"]
 GROWN = 100  # growth beyond which nothing is compared
 MARGIN = 10  # factor by which the difference may exceed that of a rounding in each step, each of which has grown
 
 
-def float_is_near_double(program, file, run, best, folder):
-    """Raises Broken if the robot `best` of a run moves otherwise in single precision than in double precision."""
+def moves_as_in_double(program, file, run, best, folder):
+    """Raises Broken if the robot `best` of a run moves otherwise on the experiment's device, in single precision or in
+    double, than on the CPU in double precision."""
     body, experiment = folder / "body.json", folder / "no-contact.toml"
-    experiment.write_text(tomlkit.dumps(without_contact(tomllib.loads(file.read_text()))))
+    tables = without_contact(tomllib.loads(file.read_text()))
+    device = tables["simulation"]["device"]
+    experiment.write_text(tomlkit.dumps(tables))
     if program("check", experiment).returncode != 0:
         return
     text = program.output("body", run, "--individual", best, "--matured")
@@ -31,27 +36,28 @@ def float_is_near_double(program, file, run, best, folder):
     moved = folder / "moved.json"
     moved.write_text(json.dumps(with_moved_positions(json.loads(text))))
 
-    double = _end(program, body, experiment, "double", folder)
-    if not double:
+    reference = _end(program, body, experiment, "double", "cpu", folder)
+    if not reference:
         return
-    size, steps = max(1e-3, *(abs(x) for x in double.positions)), double.steps
-    perturbed = _end(program, moved, experiment, "double", folder)
+    size, steps = max(1e-3, *(abs(x) for x in reference.positions)), reference.steps
+    perturbed = _end(program, moved, experiment, "double", "cpu", folder)
     if not perturbed or perturbed.steps != steps:
         return
-    growth = _difference(double, perturbed) / (UNIT * size)
+    growth = _difference(reference, perturbed) / (UNIT * size)
     if growth > GROWN:
         return
-    single = _end(program, body, experiment, "float", folder)
-    if not single:
-        raise Broken("precision: float: the simulation ends early, which in double it does not")
-    if single.steps != steps:  # the experiment leaves the time step to the body and its precision
-        return
-    difference = _difference(double, single) / (UNIT * size)
-    if difference > MARGIN * steps * max(1, growth):
-        raise Broken(
-            f"precision: float differs from double by {difference:.3g} roundings after {steps} steps, in which one "
-            f"grows to {growth:.3g}"
-        )
+    for precision in ("float",) if device == "cpu" else ("float", "double"):
+        end, where = _end(program, body, experiment, precision, device, folder), f"{precision} on {device}"
+        if not end:
+            raise Broken(f"precision: {where}: the simulation ends early, which in double on cpu it does not")
+        if end.steps != steps:  # the experiment leaves the time step to the body and its precision
+            continue
+        difference = _difference(reference, end) / (UNITS[precision] * size)
+        if difference > MARGIN * steps * max(1, growth):
+            raise Broken(
+                f"precision: {where} differs from double on cpu by {difference:.3g} roundings after {steps} steps, in "
+                f"which one grows to {growth:.3g}"
+            )
 
 
 def without_contact(tables):
@@ -78,14 +84,15 @@ class _End:
         self.steps = round(1000 * DURATION / float(re.search(r"steps of (\S+) ms", text)[1]))
 
 
-def _end(program, body, experiment, precision, folder):
+def _end(program, body, experiment, precision, device, folder):
     """Returns the end of a simulation, or None if it ended early."""
     trajectory = folder / "trajectory.csv"
     options = ("--duration", DURATION, "--threads", 1, "--trajectory", trajectory)
-    done = program("simulate", body, experiment, *options, "--set", f"simulation.precision={precision}")
+    simulation = ("--set", f"simulation.precision={precision}", "--set", f"simulation.device={device}")
+    done = program("simulate", body, experiment, *options, *simulation)
     if done.returncode in (1, 2):  # it diverged, or this body needs shorter steps
         return None
-    require(done, f"simulate, {precision}")
+    require(done, f"simulate, {precision} on {device}")
     return _End(done.stdout, trajectory)
 
 

@@ -1,0 +1,102 @@
+"""Tests that a campaign simulates random bodies and names those that show a fault. Programs stand in for those that a
+GPU needs."""
+
+import os
+import pathlib
+import tempfile
+import unittest
+import unittest.mock
+
+from campaign.bodies import BATCHES, BODIES, SANITIZED, SANITIZERS, Bodies, Sanitizers
+
+HOSTILE = pathlib.Path(os.environ["EVODEVO_PROGRAM"]).with_name("hostile_bodies")
+# does what hostile_bodies does, but more quickly, and something else with the batch 30
+STANDS_IN = """\
+#!/bin/sh
+for batch in $(seq $2 $(($2 + $3 - 1))); do
+  found=; [ $batch != 30 ] || {{ {fault}; }}
+  echo '{{"batch":'$batch',"diverged":0,"found":['$found'],"tried":'$4',"what":"kind '$((batch % 2))'"}}'
+done
+"""
+# runs a program as compute-sanitizer does; one tool complains about each batch, one about the program
+SANITIZER = """\
+#!/bin/sh
+tool=$2; shift 4
+echo "========= COMPUTE-SANITIZER"
+"$@" || exit
+case $tool in
+  racecheck) echo "========= Error: Race reported between Write access at line 9"; exit 9 ;;
+  synccheck) kill -9 $$ ;;
+esac
+"""
+
+
+class RandomBodies(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = pathlib.Path(scratch.name)
+        one_core = unittest.mock.patch("os.cpu_count", return_value=1)
+        one_core.start()
+        self.addCleanup(one_core.stop)
+
+    def program(self, name, text):
+        program = self.folder / name
+        program.write_text(text)
+        program.chmod(0o755)
+        return program
+
+    def sittings(self, fault, number=2, seconds=60):
+        """Returns the outcomes of short sittings, in each of which the batches of one process are tried."""
+        part, past = Bodies(self.program("hostile_bodies", STANDS_IN.format(fault=fault)), "cuda", seconds), []
+        for _ in range(number):
+            past += part.sitting(0, past)
+        return past
+
+    def test_real_bodies_hold(self):
+        outcomes = list(Bodies(HOSTILE, "cpu").sitting(0, ()))
+        self.assertEqual([each.found for each in outcomes if each.found], [])
+        self.assertEqual(sum(each.tried for each in outcomes), BATCHES * BODIES)
+        self.assertEqual(len(outcomes), BATCHES)  # each kind once: methods, precisions, tame and hostile
+
+    def test_the_next_sitting_goes_on(self):
+        outcomes = self.sittings(f"found='\"body 3: hot\"'")
+        self.assertEqual(sum(each.tried for each in outcomes), 2 * BATCHES * BODIES)
+        found = [fault for each in outcomes for fault in each.found]
+        self.assertEqual(found, [f"hostile_bodies cuda 30 1 {BODIES}: body 3: hot"])
+
+    def test_a_crash_is_named_by_its_batch_and_the_next_sitting_passes_over_it(self):
+        outcomes = self.sittings("exit 7", number=3)
+        found = [fault for each in outcomes for fault in each.found]
+        self.assertEqual(found, [f"hostile_bodies cuda 30 1 {BODIES}: exit code 7"])
+        self.assertEqual(sum(each.tried for each in outcomes), 3 * BATCHES * BODIES)
+
+    def test_a_hang_is_named(self):
+        found = [fault for each in self.sittings("sleep 1000", seconds=1) for fault in each.found]
+        self.assertEqual(found, [f"hostile_bodies cuda 30 1 {BODIES}: not done after 1 s"])
+
+    def test_a_program_that_was_not_built_is_left_out(self):
+        (outcome,) = Bodies(self.folder / "hostile_bodies", "cuda").sitting(0, ())
+        self.assertRegex(outcome.case, "left out, since there is no .*hostile_bodies; .*EVODEVO_TESTS=ON")
+        self.assertEqual(outcome.tried, 0)
+
+    def test_what_sanitizers_complain_about_is_named(self):
+        path = f"{self.folder}:{os.environ['PATH']}"
+        self.program("compute-sanitizer", SANITIZER)
+        part = Sanitizers(self.program("hostile_bodies", STANDS_IN.format(fault="true")), "cuda")
+        with unittest.mock.patch.dict(os.environ, PATH=path):
+            outcomes = []
+            for _ in range(2 * len(SANITIZERS)):
+                outcomes += part.sitting(0, outcomes)
+        self.assertEqual([(each.case, each.tried) for each in outcomes], 2 * [(tool, SANITIZED) for tool in SANITIZERS])
+        found = {each.case: each.found[0] for each in reversed(outcomes) if each.found}
+        self.assertEqual(
+            found["racecheck"],
+            f"racecheck: hostile_bodies cuda 0 1 {SANITIZED}: exit code 9: Error: Race reported between Write access at line 9",
+        )
+        self.assertIn("synccheck: hostile_bodies cuda 0", found["synccheck"])
+        self.assertEqual(set(found), {"racecheck", "synccheck"})
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,135 @@
+"""The parts that simulate random bodies, most of which no experiment would make, with the program hostile_bodies
+(tests/hostile): as many as time allows, and few of each kind under compute-sanitizer."""
+
+import collections
+import concurrent.futures
+import itertools
+import json
+import os
+import shutil
+import signal
+import subprocess
+import time
+
+from .outcomes import Outcome
+
+BODIES = 256  # in a batch
+BATCHES = 24  # of one process: each method in both precisions, with tame bodies and with others
+SECONDS = 120  # after which a process hangs
+SANITIZERS = ("memcheck", "racecheck", "initcheck", "synccheck")
+FORMS = 96  # batches after which each kind has been there
+SANITIZED = 6  # bodies in a batch under a sanitizer
+FAULTY = 9  # exit code of a sanitizer that found something
+
+
+class Bodies:
+    """Batches follow from their numbers, which go on from sitting to sitting."""
+
+    name = "bodies"
+
+    def __init__(self, program, device, seconds=SECONDS):
+        self._program, self._device, self._seconds = program, device, seconds
+
+    def sitting(self, seconds, past):
+        if not self._program.exists():
+            yield Outcome(self.name, f"left out, since {obstacle(self._program)}", 0, (), 0)
+            return
+        end, jobs = time.monotonic() + seconds, os.cpu_count() or 1
+        first = itertools.count(sum(each.tried for each in past) // BODIES, BATCHES)
+        with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+            while True:  # at least once, however little time there is
+                for outcomes in pool.map(self._try, itertools.islice(first, jobs)):
+                    yield from outcomes
+                if time.monotonic() >= end:
+                    return
+
+    def _try(self, first):
+        """Returns the outcomes of some batches, one for each kind of batch."""
+        began = time.monotonic()
+        command = [self._program, self._device, first, BATCHES, BODIES]
+        told, fault = output(command, self._seconds)
+        results = [json.loads(line) for line in told.splitlines() if line.endswith("}")]
+        found = collections.defaultdict(list)
+        for result in results:
+            faults = found[result["what"]]
+            faults += [f"{self._command(result['batch'])}: {each}" for each in result["found"]]
+        if fault:
+            found["not done"] = [f"{self._command(first + len(results))}: {fault}"]
+            # numbers of batches follow from the bodies tried, so that the next sitting passes over those that are left
+            results += [{"what": "not done", "tried": BODIES}] * (BATCHES - len(results))
+        spent = (time.monotonic() - began) / len(results)
+        by_kind = collections.Counter(result["what"] for result in results)
+        return [
+            Outcome(self.name, what, BODIES * count, tuple(found[what]), spent * count) for what, count in by_kind.items()
+        ]
+
+    def _command(self, batch):
+        return f"{self._program.name} {self._device} {batch} 1 {BODIES}"
+
+
+class Sanitizers:
+    """Few bodies of each kind, under each tool of compute-sanitizer. What does not end in time is named."""
+
+    name = "sanitizers"
+
+    def __init__(self, program, device, seconds=SECONDS):
+        self._program, self._device, self._seconds = program, device, seconds
+
+    def sitting(self, seconds, past):
+        missing = None if shutil.which("compute-sanitizer") else "there is no compute-sanitizer"
+        if missing or not self._program.exists():
+            yield Outcome(self.name, f"left out, since {missing or obstacle(self._program)}", 0, (), 0)
+            return
+        end, jobs = time.monotonic() + seconds, os.cpu_count() or 1
+        tried = collections.Counter()
+        for each in past:
+            tried[each.case] += each.tried // SANITIZED
+        cases = sorted(itertools.product(SANITIZERS, range(FORMS)), key=lambda case: case[1])
+        waiting = [case for case in cases if case[1] >= tried[case[0]]]
+        with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+            for some in (waiting[i : i + jobs] for i in range(0, len(waiting), jobs)):
+                yield from pool.map(self._try, some)
+                if time.monotonic() >= end:
+                    return
+
+    def _try(self, case):
+        tool, batch = case
+        began = time.monotonic()
+        words = [self._program, self._device, batch, 1, SANITIZED]
+        sanitizer = ["compute-sanitizer", "--tool", tool, "--error-exitcode", FAULTY]
+        told, fault = output([*sanitizer, *words], self._seconds)
+        results = [json.loads(line) for line in told.splitlines() if line.startswith("{")]
+        found = [each for result in results for each in result["found"]]
+        if fault or not results:
+            found.append(f"{fault or 'no result'}{first_complaint(told)}")
+        named = tuple(f"{tool}: {self._program.name} {self._device} {batch} 1 {SANITIZED}: {each}" for each in found)
+        return Outcome(self.name, tool, SANITIZED, named, time.monotonic() - began)
+
+
+def obstacle(program):
+    return f"there is no {program}; configure with -D EVODEVO_TESTS=ON and build the target {program.name}"
+
+
+def output(command, seconds):
+    """Returns what a command prints, and why it did not end well, or None."""
+    with subprocess.Popen(
+        [*map(str, command)],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        process_group=0,
+    ) as process:
+        try:
+            told, _ = process.communicate(timeout=seconds)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)  # a sanitizer and the program that it runs
+            return process.communicate()[0], f"not done after {seconds} s"
+    return told, f"exit code {process.returncode}" if process.returncode else None
+
+
+def first_complaint(told):
+    """Returns the first line of a sanitizer that says what is wrong, or the last line of the program."""
+    lines = [line.strip("= ") for line in told.splitlines() if line.strip("= ") and not line.startswith("{")]
+    complaints = [line for line in lines if not line.startswith("COMPUTE-SANITIZER")]
+    return f": {complaints[0]}" if complaints else ""
