@@ -19,8 +19,8 @@ spec = importlib.util.spec_from_file_location("analyses", FOLDER / "analyses.py"
 analyses = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(analyses)
 
-SHORT = ["experiment.evaluations=24", "experiment.population=8", "fitness.0.settle=0.1", "fitness.0.window=0.6"]
-SHORT_DEVELOPMENT = ["development.cycles=14", "development.operator.0.from=3", "development.operator.1.from=2"]
+SHORT = ["experiment.evaluations=24", "experiment.population=8", "fitness.0.settle=0.5", "fitness.0.window=0.75"]
+SHORT_DEVELOPMENT = ["development.cycles=5"]
 
 
 def make_run(name, folder):

@@ -33,7 +33,7 @@ except ImportError as error:
     sys.exit(f"analyses: {error}; this needs NumPy, pandas, SciPy and evodevo's Python package with its compiled module, "
              "in PYTHONPATH: see tools/python/README.md")
 
-CYCLE = 0.05  # s; how often development changes a body, and rotations are measured
+STEP = 0.05  # s; how often rotations are measured, of which a cycle of development has a whole number
 TURN = 2 * np.pi
 MOMENTS = {"at birth": 0.0, "in midlife": 0.5, "at death": 1.0}  # progress of development
 COLUMNS = ["experiment", "seed", "individual", "life", "distance", "turns"]
@@ -89,12 +89,12 @@ def rotation(before, after):
 
 class Course:
     """A body and its development: lengths go from those of `newborn` to those of `matured`, the same robot as it would
-    be if it were born at the end of its development, in steps, and phases go linearly with time. `first` and `last`:
-    the times between which they do, s."""
+    be if it were born at the end of its development, after each `cycle` (s), and phases go linearly with time. `first`
+    and `last`: the times between which they do, s."""
 
-    def __init__(self, newborn, matured, first, last):
+    def __init__(self, newborn, matured, first, last, cycle):
         self._lengths = newborn.rest_lengths, matured.rest_lengths
-        self._first, self._last = first, last
+        self._first, self._last, self._cycle = first, last, cycle
         one = newborn.materials.iloc[newborn.material_of].reset_index(drop=True)
         other = matured.materials.iloc[matured.material_of].reset_index(drop=True)
         rate = (other["phase"] - one["phase"]) / (last - first)
@@ -104,9 +104,10 @@ class Course:
 
     def go_on(self, result):
         """Continues the life of the body from a simulation that ended well. `result`: a core.SimulationResult."""
-        progress = np.clip((result.time - self._first) / (self._last - self._first), 0, 1)
+        changed = self._cycle * np.floor((result.time + STEP / 2) / self._cycle)
+        progress = np.clip((changed - self._first) / (self._last - self._first), 0, 1)
         lengths = self._lengths[0] + progress * (self._lengths[1] - self._lengths[0])
-        begun = result.time > self._first - CYCLE / 2
+        begun = result.time > self._first - STEP / 2
         self.body = dataclasses.replace(
             self.body, positions=result.positions, velocities=result.velocities, time=result.time,
             rest_lengths=lengths, materials=self._developing if begun else self.body.materials)
@@ -118,6 +119,7 @@ def live(experiment, genes, genomes):
     settings = experiment.settings
     fitness = settings["fitness"][0]
     first, last = fitness["settle"], fitness["settle"] + fitness["window"]
+    cycle = settings.get("development", {}).get("cycle_time", STEP)
 
     def bodies(progress):
         made = []
@@ -126,19 +128,19 @@ def live(experiment, genes, genomes):
             made[-1].genes = genes.at(values, progress)
         return experiment.decode(made)
 
-    courses = [Course(*pair, first, last) for pair in zip(bodies(0), bodies(1))]
+    courses = [Course(*pair, first, last, cycle) for pair in zip(bodies(0), bodies(1))]
     centres, turns, failed = [[] for _ in courses], np.zeros(len(courses)), set()
-    for cycle in range(round(last / CYCLE)):
-        results = core.simulate([course.body for course in courses], CYCLE, scene=settings["scene"],
+    for step in range(round(last / STEP)):
+        results = core.simulate([course.body for course in courses], STEP, scene=settings["scene"],
                                 simulation=settings["simulation"])
         for i, (course, result) in enumerate(zip(courses, results)):
             if i in failed or result.status != "ok":
                 failed.add(i)
                 continue
-            if cycle * CYCLE >= first - CYCLE / 2:
+            if step * STEP >= first - STEP / 2:
                 turns[i] += rotation(course.body.positions, result.positions) / TURN
             course.go_on(result)
-            if (cycle + 1) * CYCLE >= first - CYCLE / 2:
+            if (step + 1) * STEP >= first - STEP / 2:
                 centres[i].append(np.average(result.positions, axis=0, weights=result.masses)[1])
     return [Life(np.nan, np.nan) if i in failed else Life((y[-1] - y[0]) / fitness["length"], turns[i])
             for i, y in enumerate(centres)]
