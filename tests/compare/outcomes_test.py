@@ -41,7 +41,8 @@ class Outcomes(unittest.TestCase):
         for text in (scenes, slope):
             plain, developing = self.cells(text)
             self.assertNotEqual(plain, developing)
-        (at_birth, matured), (_, developed) = self.cells(bodies)
+        (shape, at_birth, matured), (_, _, developed) = self.cells(bodies)
+        self.assertGreater(shape, 0)
         self.assertGreater(at_birth, 0)
         self.assertEqual(at_birth, matured)
         self.assertNotEqual(at_birth, developed)

@@ -123,21 +123,24 @@ def on_the_slope(program, out, arm, run):
     return {f"after {count * population} evaluations": past.at("generations", count, "best") for count in GENERATIONS}
 
 
-def body_length(body):
-    positions = [mass["position"] for mass in body["masses"]]
-    return max(max(axis) - min(axis) for axis in zip(*positions))
+def shape(body):
+    """Returns the distances of a newborn's masses from their centre, in body lengths."""
+    places = [mass["position"] for mass in body["masses"]]
+    axes = list(zip(*places))
+    length = max(max(axis) - min(axis) for axis in axes)
+    centre = [statistics.fmean(axis) for axis in axes]
+    return [math.dist(place, centre) / length for place in places]
 
 
-def radii(body):
-    """Returns the distances of the middles of all springs from the centre of mass, in body lengths: a description of a
-    body that does not depend on where it has gone and how it has turned."""
-    masses = body["masses"]
-    total = sum(mass["mass"] for mass in masses)
-    centre = [sum(mass["mass"] * mass["position"][axis] for mass in masses) / total for axis in range(3)]
-    places = [mass["position"] for mass in masses]
-    middles = ([(a + b) / 2 for a, b in zip(places[spring["a"]], places[spring["b"]])] for spring in body["springs"])
-    length = body_length(body)
-    return [math.dist(middle, centre) / length for middle in middles]
+def lengths(body):
+    """Returns the rest lengths of a body's springs, m. Unlike positions, they do not depend on the pose."""
+    return [spring["rest_length"] for spring in body["springs"]]
+
+
+def mean_distance(descriptions):
+    """Returns the mean Wasserstein distance between the pairs of some lists of numbers."""
+    pairs = list(itertools.starmap(stats.wasserstein_distance, itertools.combinations(descriptions, 2)))
+    return statistics.fmean(pairs) if pairs else -math.inf
 
 
 def living(folder):
@@ -148,17 +151,20 @@ def living(folder):
 
 
 def between_bodies(program, out, arm, run):
-    """Returns the mean distance between the bodies of a population, at birth and matured: the Wasserstein distance
-    between their radii()."""
+    """Returns the mean distances between the bodies of a population: of their shapes at birth, and of the lengths of
+    their springs at birth and matured."""
     row = out / "rows" / "bodies" / arm.name / f"{run.name}.json"
     if not row.exists():
         ids = living(run)
         chosen = ids[:: max(1, len(ids) // BODIES)][:BODIES]
-        distances = {}
-        for age, words in (("at birth", ()), ("matured", ("--matured",))):
-            bodies = [radii(program.json("body", run, "--individual", number, *words)) for number in chosen]
-            pairs = list(itertools.starmap(stats.wasserstein_distance, itertools.combinations(bodies, 2)))
-            distances[age] = statistics.fmean(pairs) if pairs else -math.inf
+        newborn, matured = (
+            [program.json("body", run, "--individual", number, *words) for number in chosen] for words in ((), ("--matured",))
+        )
+        distances = {
+            "shape at birth, body lengths": mean_distance(map(shape, newborn)),
+            "springs at birth, m": mean_distance(map(lengths, newborn)),
+            "springs when matured, m": mean_distance(map(lengths, matured)),
+        }
         row.parent.mkdir(parents=True, exist_ok=True)
         unfinished = row.with_suffix(".new")
         unfinished.write_text(json.dumps(distances))
@@ -189,7 +195,7 @@ def report(title, of_arms):
 OUTCOMES = (
     ("Distance in other scenes", in_scenarios),
     ("Distance on a slope to which evolution moved", on_the_slope),
-    ("Distance between the bodies of a population, in body lengths", between_bodies),
+    ("Distance between the bodies of a population", between_bodies),
     ("The line of the best robot, % of the run", line_of_the_best),
 )
 
