@@ -3,6 +3,7 @@
 
 import collections
 import concurrent.futures
+import dataclasses
 import itertools
 import json
 import os
@@ -16,6 +17,7 @@ from .outcomes import Outcome
 BODIES = 256  # in a batch
 BATCHES = 24  # of one process: each method in both precisions, with tame bodies and with others
 SECONDS = 120  # after which a process hangs
+KEPT = 60  # s of outcomes that become one
 SANITIZERS = ("memcheck", "racecheck", "initcheck", "synccheck")
 FORMS = 96  # batches after which each kind has been there
 SANITIZED = 6  # bodies in a batch under a sanitizer
@@ -37,10 +39,15 @@ class Bodies:
         end, jobs = time.monotonic() + seconds, os.cpu_count() or 1
         first = itertools.count(sum(each.tried for each in past) // BODIES, BATCHES)
         with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+            told, kept = time.monotonic(), []
             while True:  # at least once, however little time there is
                 for outcomes in pool.map(self._try, itertools.islice(first, jobs)):
-                    yield from outcomes
-                if time.monotonic() >= end:
+                    kept += (shared(outcome, jobs) for outcome in outcomes)
+                now = time.monotonic()
+                if now >= min(end, told + KEPT):
+                    yield from merged(kept)
+                    told, kept = now, []
+                if now >= end:
                     return
 
     def _try(self, first):
@@ -88,7 +95,7 @@ class Sanitizers:
         waiting = [case for case in cases if case[1] >= tried[case[0]]]
         with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
             for some in (waiting[i : i + jobs] for i in range(0, len(waiting), jobs)):
-                yield from pool.map(self._try, some)
+                yield from (shared(outcome, jobs) for outcome in pool.map(self._try, some))
                 if time.monotonic() >= end:
                     return
 
@@ -104,6 +111,28 @@ class Sanitizers:
             found.append(f"{fault or 'no result'}{first_complaint(told)}")
         named = tuple(f"{tool}: {self._program.name} {self._device} {batch} 1 {SANITIZED}: {each}" for each in found)
         return Outcome(self.name, tool, SANITIZED, named, time.monotonic() - began)
+
+
+def shared(outcome, jobs):
+    """Returns an outcome that so many processes have found at once, with its share of the time."""
+    return dataclasses.replace(outcome, seconds=outcome.seconds / jobs)
+
+
+def merged(outcomes):
+    """Returns one outcome for each case."""
+    by_case = {}
+    for each in outcomes:
+        by_case.setdefault(each.case, []).append(each)
+    return [
+        Outcome(
+            group[0].part,
+            case,
+            sum(each.tried for each in group),
+            tuple(fault for each in group for fault in each.found),
+            sum(each.seconds for each in group),
+        )
+        for case, group in by_case.items()
+    ]
 
 
 def obstacle(program):
