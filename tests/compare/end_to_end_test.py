@@ -273,7 +273,25 @@ class Comparison(unittest.TestCase):
         self.assertEqual(refused.returncode, 2)
         self.assertIn("differ in their first objective: ", refused.stderr)
 
-    def test_a_run_that_fails_stops_the_comparison(self):
+    def program(self, name, line):
+        """Returns a program that does something before it does what evodevo does."""
+        program = self.folder / name
+        program.write_text(f'#!/bin/sh\n{line}\nexec {shlex.quote(PROGRAM)} "$@"\n')
+        program.chmod(0o755)
+        return program
+
+    def compare_with(self, program):
+        environment = os.environ | {"EVODEVO_PROGRAM": str(program)}
+        return subprocess.run(self.command(), env=environment, capture_output=True, text=True)
+
+    def test_a_run_that_fails_once_is_tried_again(self):
+        # the first run of all finds no device
+        marker = shlex.quote(str(self.folder / "failed"))
+        done = self.compare_with(self.program("fails", f'[ "$1" = run ] && mkdir {marker} 2>/dev/null && echo busy && exit 1'))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, "tried once more: .*seed-1: the run ended with 1:\n  busy")
+
+    def test_a_run_that_fails_twice_stops_the_comparison(self):
         # a file with the name of the run's folder
         folder = self.folder / "out" / "runs" / "plain"
         folder.mkdir(parents=True)
@@ -284,10 +302,7 @@ class Comparison(unittest.TestCase):
         self.assertIn("mend that and give the same command again", refused.stderr)
 
     def test_a_run_that_is_killed_stops_the_comparison(self):
-        killed = self.folder / "killed"
-        killed.write_text(f'#!/bin/sh\n[ "$1" = run ] && kill -9 $$\nexec {shlex.quote(PROGRAM)} "$@"\n')
-        killed.chmod(0o755)
-        refused = subprocess.run(self.command(), env=os.environ | {"EVODEVO_PROGRAM": str(killed)}, capture_output=True, text=True)
+        refused = self.compare_with(self.program("killed", '[ "$1" != run ] || kill -9 $$'))
         self.assertEqual(refused.returncode, 2)
         self.assertIn("ended with -9", refused.stderr)
         self.assertIn("the same command goes on from there", refused.stderr)

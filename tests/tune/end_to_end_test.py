@@ -125,15 +125,6 @@ class Tune(unittest.TestCase):
         self.assertRegex(done.stdout, f"best.toml is not accepted where it lies; copy it to {self.folder},(.|\n)*mine is n")
         self.assertEqual((self.folder / "out" / "report.md").read_text().count("| failed |"), 1)
 
-    def test_a_run_that_fails_once_is_made_again(self):
-        # the first run with this population finds no device
-        marker = shlex.quote(str(self.folder / "failed"))
-        fails = self.program(f'case "$*" in run*population=7*) mkdir {marker} 2>/dev/null && exit 1;; esac')
-        done = self.tune("experiment.population=4,7,5", program=fails)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertTrue((self.folder / "failed").exists())
-        self.assertEqual({row["experiment.population"] for row in self.results()}, {"4", "5", "7"})
-
     def test_a_race_whose_runs_all_fail_says_so(self):
         said = self.refused(program=self.program('[ "$1" != run ] || exit 1'))
         self.assertRegex(said, r"^tune: .*small.toml: no configurations to compare are left(.|\n)*the run ended with 1")

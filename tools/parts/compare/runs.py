@@ -25,7 +25,7 @@ TABLES_WITH_DEFAULTS = ("materials", "plugins", "simulation")
 
 
 class RunFailure(Failure):
-    """The reason why a run failed. It would fail again; a run that was stopped raises a plain Failure."""
+    """The reason why a run failed; a run that was stopped raises a plain Failure."""
 
     def __init__(self, run, reason):
         super().__init__(reason)
@@ -205,9 +205,10 @@ class Runs:
 
     def make(self, jobs, launcher, tell):
         """Makes or resumes all runs that are not finished, `jobs` at a time, each with the launcher and, if
-        the launcher has GPUs, on the one that the fewest runs use."""
+        the launcher has GPUs, on the one that the fewest runs use. A run that fails is tried once more, because the reason
+        may be the host's, such as a GPU that another program holds."""
         waiting = self.waiting()
-        active, gpus = {}, {}
+        active, gpus, failed = {}, {}, set()
         try:
             while waiting or active:
                 while waiting and len(active) < jobs:
@@ -218,8 +219,16 @@ class Runs:
                     tell(f"{run.variant.name}, seed {run.seed} ({len(waiting)} more to start)")
                 os.waitid(os.P_ALL, 0, os.WEXITED | os.WNOWAIT)
                 for run in [run for run, process in active.items() if process.poll() is not None]:
-                    self._require_success(run, active.pop(run).returncode)
-                    rows.write(run.row, self._shown(run))
+                    try:
+                        self._require_success(run, active.pop(run).returncode)
+                    except RunFailure as failure:
+                        if run in failed:
+                            raise
+                        failed.add(run)
+                        waiting.append(run)
+                        tell(f"tried once more: {failure}")
+                    else:
+                        rows.write(run.row, self._shown(run))
         finally:
             stop(active.values())
 
@@ -290,8 +299,7 @@ class Runs:
     def _require_success(run, code):
         if code != 0:
             last = "\n  ".join(run.log.read_text().splitlines()[-3:])
-            # a run counts as stopped if a signal ended it or it was asked to stop; otherwise it failed, and would fail
-            # again
+            # a run counts as stopped if a signal ended it or it was asked to stop; otherwise it failed
             stopped = code < 0 or code == STOPPED
             remedy = "the same command goes on from there" if stopped else "mend that and give the same command again"
             reason = f"{run.folder}: the run ended with {code}:\n  {last}\n{remedy}"

@@ -84,10 +84,8 @@ class Trials:
 
     def evaluate(self, configurations, seeds):
         """Returns for each configuration its scores with the seeds 1 to `seeds`, more being better, or None if a run of
-        it failed twice. A run that failed is tried once more, because the reason may be the host's, such as a GPU that
-        another program holds."""
+        it failed."""
         variants = {self.variant(configuration): configuration for configuration in configurations}
-        failed_once = set()
         while variants:
             runs = Runs(self._program, self._out, list(variants), range(1, seeds + 1))
             runs.check()
@@ -95,13 +93,9 @@ class Trials:
                 self._make(runs)
                 break
             except RunFailure as failure:
-                if failure.run not in failed_once:
-                    failed_once.add(failure.run)
-                    self._tell(f"a run failed, and is tried once more: {failure}")
-                    continue
                 failed = variants.pop(failure.run.variant)
                 self.obstacles[failed] = str(failure)
-                self._tell(f"configuration {failed.number} drops out, because a run of it failed twice: {failure}")
+                self._tell(f"configuration {failed.number} drops out, because a run of it failed: {failure}")
         else:
             return [None] * len(configurations)
         for run in runs.all:
