@@ -51,24 +51,21 @@ class Bodies:
                     return
 
     def _try(self, first):
-        """Returns the outcomes of some batches, one for each kind of batch."""
-        began = time.monotonic()
-        command = [self._program, self._device, first, BATCHES, BODIES]
-        told, fault = output(command, self._seconds)
-        results = [json.loads(line) for line in told.splitlines() if line.endswith("}")]
-        found = collections.defaultdict(list)
-        for result in results:
-            faults = found[result["what"]]
-            faults += [f"{self._command(result['batch'])}: {each}" for each in result["found"]]
-        if fault:
-            found["not done"] = [f"{self._command(first + len(results))}: {fault}"]
-            # numbers of batches follow from the bodies tried, so that the next sitting passes over those that are left
-            results += [{"what": "not done", "tried": BODIES}] * (BATCHES - len(results))
-        spent = (time.monotonic() - began) / len(results)
-        by_kind = collections.Counter(result["what"] for result in results)
-        return [
-            Outcome(self.name, what, BODIES * count, tuple(found[what]), spent * count) for what, count in by_kind.items()
-        ]
+        """Returns the outcomes of some batches. After a batch with which the program does not end well, it goes on with
+        the next one."""
+        outcomes, end = [], first + BATCHES
+        while first < end:
+            began = time.monotonic()
+            told, fault = output([self._program, self._device, first, end - first, BODIES], self._seconds)
+            results = [json.loads(line) for line in told.splitlines() if line.endswith("}")]
+            if fault:
+                results.append({"batch": first + len(results), "what": "not done", "tried": BODIES, "found": [fault]})
+            spent = (time.monotonic() - began) / max(1, len(results))
+            for each in results:
+                found = tuple(f"{self._command(each['batch'])}: {fault}" for fault in each["found"])
+                outcomes.append(Outcome(self.name, each["what"], each["tried"], found, spent))
+            first += max(1, len(results))
+        return outcomes
 
     def _command(self, batch):
         return f"{self._program.name} {self._device} {batch} 1 {BODIES}"
