@@ -6,7 +6,6 @@
 //   hostile_bodies cpu|cuda FIRST_BATCH BATCHES BODIES
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <memory>
@@ -64,12 +63,6 @@ bool are_equal(const Answer& a, const Answer& b) {
          a.task.work == b.task.work && same_bits(a.state, b.state);
 }
 
-double distance(const State& a, const State& b) {
-  double largest = 0;
-  for (std::size_t i = 0; i < a.position.size(); ++i) largest = std::max(largest, norm(a.position[i] - b.position[i]));
-  return largest;
-}
-
 /// Every so many lives, in reversed order.
 std::vector<std::size_t> some(std::size_t lives) {
   std::vector<std::size_t> chosen;
@@ -117,7 +110,7 @@ class Trial {
     for (std::size_t i = 0; i < answers.size(); ++i) {
       if (answers[i].task.status != cpu[i].task.status)
         tell(i, "not the status that it has on the CPU");
-      else if (const double apart = distance(answers[i].state, cpu[i].state); apart > rounding)
+      else if (const double apart = largest_difference(answers[i].state, cpu[i].state); apart > rounding)
         tell(i, std::to_string(apart) + " m from where it is on the CPU");
     }
   }

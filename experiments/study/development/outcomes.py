@@ -165,10 +165,7 @@ def between_bodies(program, out, arm, run):
             "springs at birth, m": mean_distance(map(lengths, newborn)),
             "springs when matured, m": mean_distance(map(lengths, matured)),
         }
-        row.parent.mkdir(parents=True, exist_ok=True)
-        unfinished = row.with_suffix(".new")
-        unfinished.write_text(json.dumps(distances))
-        unfinished.replace(row)
+        rows.store(row, distances)
     return json.loads(row.read_text())
 
 

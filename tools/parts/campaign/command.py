@@ -38,7 +38,7 @@ def sit(given, program):
 def parts(program, folder):
     operators, built = listed_operators(program), pathlib.Path(program).resolve().parents[1]
     return [
-        Bodies(built / "bin" / "hostile_bodies", "cpu"),
+        Bodies(hostile_bodies(program), "cpu"),
         Experiments(operators, Laws(program, folder.resolve() / "experiments"), folder),
         Fuzz(built_targets(), operators, folder),
         Soak(program, folder),
@@ -47,13 +47,17 @@ def parts(program, folder):
 
 
 def parts_on_gpu(program, folder):
-    bodies = pathlib.Path(program).resolve().with_name("hostile_bodies")
+    bodies = hostile_bodies(program)
     laws = Laws(program, folder.resolve() / "experiments")
     return [
         Bodies(bodies, "cuda"),
         Experiments(listed_operators(program), laws, folder, "cuda"),
         Sanitizers(bodies, "cuda"),
     ]
+
+
+def hostile_bodies(program):
+    return pathlib.Path(program).resolve().with_name("hostile_bodies")
 
 
 def built_targets():

@@ -43,16 +43,21 @@ def unpack(row):
     return shown
 
 
-def write(file, shown):
-    """Writes the row of a run, as a whole or not at all."""
+def store(file, values):
+    """Writes JSON into a file, as a whole or not at all."""
     file.parent.mkdir(parents=True, exist_ok=True)
     unfinished = file.with_suffix(".new")
     with open(unfinished, "w") as stream:
-        json.dump(pack(shown), stream, separators=(",", ":"))
+        json.dump(values, stream, separators=(",", ":"))
         stream.write("\n")
         stream.flush()
         os.fsync(stream.fileno())
     unfinished.replace(file)
+
+
+def write(file, shown):
+    """Writes the row of a run, given the output of `evodevo show --json`."""
+    store(file, pack(shown))
 
 
 def read(file):
