@@ -19,6 +19,9 @@ class Ranks {
   /// for MPI is missing, or if the processes do not know of each other.
   static Ranks joined();
 
+  /// This process without others.
+  static Ranks alone() { return Ranks(nullptr); }
+
   Ranks(const Ranks&) = delete;
   Ranks& operator=(const Ranks&) = delete;
   ~Ranks();

@@ -10,6 +10,7 @@
 namespace evodevo {
 
 Command run_command();
+Command run_many_command();
 Command resume_command();
 Command check_command();
 Command show_command();

@@ -11,6 +11,7 @@
 #include <deque>
 #include <fstream>
 #include <iterator>
+#include <mutex>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -206,6 +207,8 @@ auto sort_key(const AvailableOperator& available) {
 }  // namespace
 
 Registry::Registry(const std::vector<fs::path>& path) {
+  static std::mutex mutex;  // runs of one process may begin at the same time
+  const std::lock_guard lock(mutex);
   for (const fs::path& item : path) load_all(libraries_at(item));
   std::sort(operators_.begin(), operators_.end(),
             [](const auto& a, const auto& b) { return sort_key(a) < sort_key(b); });

@@ -34,11 +34,11 @@ class SearchGroup final : public NeighbourSearch {
 
 class SimulatorGroup final : public Simulator {
  public:
-  explicit SimulatorGroup(std::vector<std::unique_ptr<Simulator>> members)
-      : members_(std::move(members)), backlog_(members_.size()), neighbours_(members_) {}
+  SimulatorGroup(std::vector<std::unique_ptr<Simulator>> members, std::shared_ptr<Backlog> backlog)
+      : members_(std::move(members)), backlog_(std::move(backlog)), neighbours_(members_) {}
 
   void run(std::span<Task> tasks, Recording recording) override {
-    const Backlog::Claim claim(backlog_, work_of(tasks));
+    const Backlog::Claim claim(*backlog_, work_of(tasks));
     members_[claim.member()]->run(tasks, recording);
   }
 
@@ -76,7 +76,7 @@ class SimulatorGroup final : public Simulator {
 
  private:
   std::vector<std::unique_ptr<Simulator>> members_;
-  Backlog backlog_;
+  std::shared_ptr<Backlog> backlog_;
   SearchGroup neighbours_;
 };
 
@@ -94,8 +94,10 @@ void Backlog::remove(std::size_t member, std::uint64_t work) {
   work_[member] -= work;
 }
 
-std::unique_ptr<Simulator> make_simulator_group(std::vector<std::unique_ptr<Simulator>> members) {
-  return std::make_unique<SimulatorGroup>(std::move(members));
+std::unique_ptr<Simulator> make_simulator_group(std::vector<std::unique_ptr<Simulator>> members,
+                                                std::shared_ptr<Backlog> backlog) {
+  if (!backlog) backlog = std::make_shared<Backlog>(members.size());
+  return std::make_unique<SimulatorGroup>(std::move(members), std::move(backlog));
 }
 
 }  // namespace evodevo

@@ -67,6 +67,7 @@ target_sources(evodevo_kernels PRIVATE
   cuda/runtime/cuda_neighbours.cpp
   cuda/runtime/cuda_simulator.cpp
   cuda/runtime/device.cpp
+  cuda/runtime/device_resources.cpp
   cuda/runtime/error.cpp
   cuda/runtime/kernels.cpp
   cuda/runtime/memory_store.cpp

@@ -12,7 +12,7 @@ namespace {
 
 using Milliseconds = std::int64_t;
 
-std::atomic<bool> requested{false};
+std::atomic<bool> requested{false}, never_ends{false};
 std::atomic<Milliseconds> last_user_signal{-1};
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<Milliseconds>::is_always_lock_free,
               "signal handlers use them");
@@ -48,7 +48,10 @@ void handle_signals(void (*handler)(int)) {
 
 std::atomic<bool>& stop_requested() { return requested; }
 void stop_on_signals() { handle_signals(stop_or_end); }
-void end_on_signals() { handle_signals(end); }
+void end_on_signals() {
+  if (!never_ends) handle_signals(end);
+}
+void never_end_on_signals() { never_ends = true; }
 
 void end_at(std::chrono::steady_clock::time_point time) {
   std::signal(SIGALRM, end);

@@ -22,6 +22,9 @@ void stop_on_signals();
 /// that is under way has to be finished.
 void end_on_signals();
 
+/// From now on, end_on_signals() changes nothing, because other runs of this process may have to finish something.
+void never_end_on_signals();
+
 /// From now on, the process ends at this time, with the exit code `ended_early`; a second from now if it is past.
 void end_at(std::chrono::steady_clock::time_point time);
 

@@ -1,7 +1,5 @@
 #include "commands/run/islands.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <iostream>
 #include <memory>
@@ -14,6 +12,7 @@
 #include "commands/run/run_options.hpp"
 #include "commands/shell/builds.hpp"
 #include "commands/shell/notices.hpp"
+#include "commands/shell/output_of_thread.hpp"
 #include "commands/shell/verification_report.hpp"
 #include "evolution/islands/island_folders.hpp"
 #include "evolution/islands/island_runs.hpp"
@@ -168,7 +167,7 @@ int report_outcome(Islands& islands, Simulator& simulator, const IslandsProgress
 }
 
 int evolve_and_report(Islands& islands, Simulator& simulator, std::atomic<bool>& stop, const RunOutput& output) {
-  const bool is_live = isatty(STDOUT_FILENO) == 1 && verbosity() != Verbosity::quiet;
+  const bool is_live = prints_on_terminal() && verbosity() != Verbosity::quiet;
   const auto progress = progress_of(islands, stop, is_live);
   const auto tell = [&](std::int64_t island, const Summary& summary) {
     progress->generation_done(island, summary);

@@ -1,13 +1,13 @@
 #include "commands/run/progress.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <iostream>
 
 #include "base/text.hpp"
 #include "commands/shell/notices.hpp"
+#include "commands/shell/output_of_thread.hpp"
 
 namespace evodevo {
 namespace {
@@ -46,7 +46,7 @@ ProgressDisplay::ProgressDisplay(const Experiment& experiment, const std::vector
     : experiment_(experiment),
       stop_(stop),
       farm_(farm),
-      live_(!farm && isatty(STDOUT_FILENO) == 1 && verbosity() != Verbosity::quiet),
+      live_(!farm && prints_on_terminal() && verbosity() != Verbosity::quiet),
       start_(std::chrono::steady_clock::now()) {
   if (past.empty()) return;
   last_ = past.back();

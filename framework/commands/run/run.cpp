@@ -301,16 +301,19 @@ bool is_to_go_on(const Given& given, std::size_t islands) {
   return has_islands(folder) ? !is_half_created(folder, static_cast<std::int64_t>(islands)) : is_begun(folder);
 }
 
-int run(const Given& given) {
-  end_on_signals();
-  const Ranks ranks = Ranks::joined();
-  if (served(ranks, given)) return 0;
+int make_run(const Ranks& ranks, const Given& given) {
   const auto file = given["EXPERIMENT.toml"].as<std::string>();
   const std::unique_ptr<TimeLimit> limit = given_limit(given);
   std::vector<Experiment> islands = given_islands(file, given);
   if (!is_to_go_on(given, islands.size())) return begin(ranks, file, std::move(islands), given, limit.get());
   remember_folders_of(islands.front());
   return go_on(ranks, given["out"].as<std::string>(), given, limit.get(), &islands);
+}
+
+int run(const Given& given) {
+  end_on_signals();
+  const Ranks ranks = Ranks::joined();
+  return served(ranks, given) ? 0 : make_run(ranks, given);
 }
 
 int resume(const Given& given) {
@@ -321,6 +324,8 @@ int resume(const Given& given) {
 }
 
 }  // namespace
+
+int make_run(const Given& given) { return make_run(Ranks::alone(), given); }
 
 Command run_command() {
   Options options;

@@ -30,6 +30,9 @@ struct RunOutput {
 /// later.
 std::size_t begin_ending(const Experiment& experiment, const RunOutput& output, const std::string& later);
 
+/// Makes the run that arguments of the command `run` ask for, without other ranks, and returns the exit code.
+int make_run(const Given& given);
+
 /// Opens an archive to continue its run, and reads its experiment, as the options of `run` or `resume` ask. Throws if
 /// the run cannot be continued.
 std::pair<Archive, Experiment> reopened(const std::filesystem::path& folder, const Given& given,

@@ -8,9 +8,9 @@
 #include "cuda/layout/packing.hpp"
 #include "cuda/layout/point_clouds.hpp"
 #include "cuda/runtime/device.hpp"
+#include "cuda/runtime/device_resources.hpp"
 #include "cuda/runtime/kernels.hpp"
 #include "cuda/runtime/launch.hpp"
-#include "cuda/runtime/memory_store.hpp"
 #include "threads/parallel.hpp"
 
 namespace evodevo {
@@ -195,7 +195,7 @@ class Portion {
 class CudaNeighbourSearch final : public NeighbourSearch {
  public:
   CudaNeighbourSearch(const cuda::Device& device, std::size_t memory)
-      : device_(device), largest_portion_(memory), store_(device.architecture), kernels_(store_) {}
+      : device_(device), largest_portion_(memory), kernels_(*store_) {}
 
   void find(std::span<const PointCloud> clouds, Workers& workers, const Use& use) override {
     cuda::work_on(device_);
@@ -211,9 +211,9 @@ class CudaNeighbourSearch final : public NeighbourSearch {
     if (jobs.empty()) return;
     for (std::span<const Job> left = jobs; !left.empty();) {
       const auto attempt = [&](std::size_t count) {
-        Portion(left.first(count), kernels_, *memory_, workers).find(use);
+        Portion(left.first(count), kernels_, resources_->memory, workers).find(use);
       };
-      left = left.subspan(memory_->with_fewer(portion_from(left), attempt));
+      left = left.subspan(resources_->memory.with_fewer(portion_from(left), attempt));
     }
   }
 
@@ -230,9 +230,9 @@ class CudaNeighbourSearch final : public NeighbourSearch {
 
   cuda::Device device_;
   std::size_t largest_portion_;  // bytes
-  cuda::KernelStore store_;
+  std::shared_ptr<cuda::KernelStore> store_ = cuda::KernelStore::of_architecture(device_.architecture);
   Kernels kernels_;
-  std::shared_ptr<cuda::MemoryStore> memory_ = cuda::MemoryStore::of_device(device_);
+  std::shared_ptr<cuda::DeviceResources> resources_ = cuda::DeviceResources::of(device_);
 };
 
 }  // namespace

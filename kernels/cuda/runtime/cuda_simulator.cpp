@@ -15,7 +15,9 @@
 #include "cuda/runtime/clusters.hpp"
 #include "cuda/runtime/cuda_neighbours.hpp"
 #include "cuda/runtime/device.hpp"
+#include "cuda/runtime/device_resources.hpp"
 #include "cuda/runtime/portion.hpp"
+#include "cuda/runtime/shared.hpp"
 #include "threads/parallel.hpp"
 
 namespace evodevo {
@@ -23,74 +25,15 @@ namespace {
 
 static_assert(cuda::guard_interval == guard_interval);
 
-constexpr std::size_t most_streams = 12;  // for one batch
-constexpr int batches_at_once = 16;       // while one is simulated, others are prepared or their results read
+// while one is simulated, others are prepared or their results read, for which each needs a thread
+constexpr std::size_t most_batches_at_once = 16;
 // share of the free memory that is used; other programs may need some too
 constexpr double share_of_memory = 0.8;
 
-/// The streams that a single batch uses exclusively.
-struct BatchResources {
-  BatchResources() {
-    for (std::size_t i = 0; i < most_streams; ++i) urgent.emplace_back(true), patient.emplace_back();
-  }
-
-  std::vector<cuda::Stream> urgent, patient;
-};
-
-/// The resources of batches that have ended, kept for later batches. New resources are created if none are available.
-class BatchResourcePool {
- public:
-  /// Holds the resources of one batch until it is destroyed.
-  class Loan {
-   public:
-    explicit Loan(BatchResourcePool& pool) : pool_(pool), resources_(pool.take()) {}
-    Loan(const Loan&) = delete;
-    Loan& operator=(const Loan&) = delete;
-    ~Loan() { pool_.give_back(std::move(resources_)); }
-    BatchResources* operator->() const { return resources_.get(); }
-
-   private:
-    BatchResourcePool& pool_;
-    std::unique_ptr<BatchResources> resources_;
-  };
-
- private:
-  std::unique_ptr<BatchResources> take() {
-    const std::lock_guard lock(mutex_);
-    if (free_.empty()) return std::make_unique<BatchResources>();
-    std::unique_ptr<BatchResources> resources = std::move(free_.back());
-    free_.pop_back();
-    return resources;
-  }
-  void give_back(std::unique_ptr<BatchResources> resources) {
-    const std::lock_guard lock(mutex_);
-    free_.push_back(std::move(resources));
-  }
-
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<BatchResources>> free_;
-};
-
-/// A number that several threads add to.
-class Count {
- public:
-  /// Adds `number` as long as the returned object exists.
-  std::shared_ptr<const void> add(std::size_t number) {
-    number_ += number;
-    return {this, [number](Count* count) { count->number_ -= number; }};
-  }
-  std::size_t number() const { return number_; }
-
- private:
-  std::atomic<std::size_t> number_ = 0;
-};
-
-/// What the simulators on several equal GPUs have in common. A kernel of a step is compiled
-/// once for all of them.
+/// What the simulators on several equal GPUs have in common.
 struct Common {
   Common(const cuda::Device& device, int threads)
-      : kernels(std::make_shared<cuda::KernelStore>(device.architecture)),
-        workers(std::make_shared<Workers>(threads)) {}
+      : kernels(cuda::KernelStore::of_architecture(device.architecture)), workers(std::make_shared<Workers>(threads)) {}
 
   std::shared_ptr<cuda::KernelStore> kernels;
   std::shared_ptr<Workers> workers;
@@ -113,14 +56,15 @@ class DeviceSimulator final : public CudaSimulator {
     cuda::work_on(device_);
     const SplitMaterials split(tasks, workers());
     const std::vector<Task*> live = begin(tasks, recording);
-    const auto presence = present_.add(live.size());
-    const cuda::Run run{scene_,
-                        stepping_,
-                        recording,
-                        device_,
-                        cuda::spans_per_range(live),
-                        largest_cluster(),
-                        clusters_.blocks_for(std::max(announced_.number(), present_.number()), *common_.kernels)};
+    const auto presence = resources_->present.add(live.size());
+    const cuda::Run run{
+        scene_,
+        stepping_,
+        recording,
+        device_,
+        cuda::spans_per_range(live),
+        largest_cluster(),
+        clusters_.blocks_for(std::max(resources_->announced.number(), resources_->present.number()), *common_.kernels)};
     std::vector<cuda::Plan<T>> plans = plan(live, run);
     double seconds = 0;
     std::size_t portions = 0;
@@ -135,9 +79,11 @@ class DeviceSimulator final : public CudaSimulator {
 
   Workers& workers() override { return *common_.workers; }
 
-  int concurrency() const override { return batches_at_once; }
+  int concurrency() const override {
+    return static_cast<int>(std::min(most_batches_at_once, common_.workers->count()));
+  }
 
-  std::shared_ptr<const void> announce(std::size_t bodies) override { return announced_.add(bodies); }
+  std::shared_ptr<const void> announce(std::size_t bodies) override { return resources_->announced.add(bodies); }
 
   std::string device() const override { return "cuda, " + device_.name + ", " + device_.architecture; }
 
@@ -177,7 +123,7 @@ class DeviceSimulator final : public CudaSimulator {
   /// The blocks of the largest cluster. The first call loads a kernel, for which it frees memory if need be.
   unsigned largest_cluster() {
     unsigned largest = 1;
-    memory_->with_fewer(1, [&](std::size_t) { largest = clusters_.largest(*common_.kernels); });
+    resources_->memory.with_fewer(1, [&](std::size_t) { largest = clusters_.largest(*common_.kernels); });
     return largest;
   }
 
@@ -205,14 +151,15 @@ class DeviceSimulator final : public CudaSimulator {
   /// Adds the time of the kernels to `seconds`.
   std::size_t simulate_next_portion(std::span<cuda::Plan<T>> plans, const cuda::Run& run, double& seconds) {
     const auto attempt = [&](std::size_t count) {
-      const BatchResourcePool::Loan resources(batch_resources_);
+      const cuda::BatchResourcePool::Loan streams_of_batch(resources_->batches);
       // runs that record springs have priority: after them, the host has work to do, while other runs use the device
-      const std::vector<cuda::Stream>& streams = run.recording.of_springs() ? resources->urgent : resources->patient;
-      seconds +=
-          cuda::Portion<T>(plans.first(count), run, *memory_).simulate(*common_.kernels, streams, workers(), busy_);
+      const std::vector<cuda::Stream>& streams =
+          run.recording.of_springs() ? streams_of_batch->urgent : streams_of_batch->patient;
+      seconds += cuda::Portion<T>(plans.first(count), run, resources_->memory)
+                     .simulate(*common_.kernels, streams, workers(), busy_);
     };
     try {
-      return memory_->with_fewer(plans_that_fit(plans), attempt);
+      return resources_->memory.with_fewer(plans_that_fit(plans), attempt);
     } catch (const cuda::OutOfMemory& error) {
       throw DeviceOutOfMemory(why_not_even_one(plans.front(), error));
     }
@@ -220,7 +167,7 @@ class DeviceSimulator final : public CudaSimulator {
 
   /// The number of plans, from the first one on, that should fit in the free memory; at least one.
   std::size_t plans_that_fit(std::span<const cuda::Plan<T>> plans) {
-    const auto free = static_cast<double>(memory_->available());
+    const auto free = static_cast<double>(resources_->memory.available());
     const std::size_t budget = std::min(largest_portion_, static_cast<std::size_t>(share_of_memory * free));
     cuda::Sizes sizes;
     std::size_t count = 0;
@@ -235,7 +182,7 @@ class DeviceSimulator final : public CudaSimulator {
     return "CUDA: a body of " + std::to_string(plan.task->body->masses.size()) + " masses and " +
            std::to_string(plan.task->body->springs.size()) + " springs needs " +
            cuda::in_mebibytes(plan.sizes().on_device()) + " of the GPU's memory, and " +
-           cuda::in_mebibytes(memory_->available()) + " are free: " + error.what();
+           cuda::in_mebibytes(resources_->memory.available()) + " are free: " + error.what();
   }
 
   Scene scene_;
@@ -244,11 +191,9 @@ class DeviceSimulator final : public CudaSimulator {
   cuda::Device device_;
   Common common_;
   cuda::Clusters clusters_;
-  std::shared_ptr<cuda::MemoryStore> memory_ = cuda::MemoryStore::of_device(device_);
+  std::shared_ptr<cuda::DeviceResources> resources_ = cuda::DeviceResources::of(device_);
   std::unique_ptr<NeighbourSearch> neighbours_;
-  BatchResourcePool batch_resources_;
   BusyClock busy_;
-  Count present_, announced_;  // bodies: in all batches under way, and of whoever has announced them
   mutable std::mutex mutex_;
   double device_seconds_ = 0;
   std::size_t most_portions_ = 1;
@@ -276,9 +221,15 @@ std::unique_ptr<Simulator> make_cuda_group(const Scene& scene, const Stepping& s
   const std::vector<cuda::Device> devices = cuda::usable_devices(numbers);
   const Common common(devices.front(), threads);
   std::vector<std::unique_ptr<Simulator>> members;
-  for (const cuda::Device& device : devices)
+  std::vector<int> chosen;
+  for (const cuda::Device& device : devices) {
     members.push_back(make_on(device, scene, stepping, common, default_portion));
-  return members.size() == 1 ? std::move(members.front()) : make_simulator_group(std::move(members));
+    chosen.push_back(device.number);
+  }
+  if (members.size() == 1) return std::move(members.front());
+  static cuda::Shared<std::vector<int>, Backlog> backlogs;  // one for all runs of this process
+  return make_simulator_group(std::move(members),
+                              backlogs.get(chosen, [&] { return std::make_shared<Backlog>(chosen.size()); }));
 }
 
 }  // namespace evodevo

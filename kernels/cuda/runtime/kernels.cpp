@@ -1,6 +1,7 @@
 #include "cuda/runtime/kernels.hpp"
 
 #include "cuda/runtime/error.hpp"
+#include "cuda/runtime/shared.hpp"
 
 namespace evodevo::cuda {
 
@@ -16,6 +17,11 @@ cudaLibrary_t load_library(const std::string& source, const std::vector<std::str
 }
 
 }  // namespace
+
+std::shared_ptr<KernelStore> KernelStore::of_architecture(const std::string& architecture) {
+  static Shared<std::string, KernelStore> stores;
+  return stores.get(architecture, [&] { return std::make_shared<KernelStore>(architecture); });
+}
 
 KernelStore::~KernelStore() {
   for (const auto& [key, library] : libraries_)

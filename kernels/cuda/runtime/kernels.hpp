@@ -1,9 +1,10 @@
-// The kernels of a simulator, compiled and loaded onto the device.
+// The kernels, compiled and loaded onto the device.
 #pragma once
 
 #include <cuda_runtime_api.h>
 
 #include <map>
+#include <memory>
 #include <mutex>
 #include <span>
 #include <string>
@@ -13,11 +14,15 @@
 
 namespace evodevo::cuda {
 
-/// The kernels of one device. Each kernel is compiled and loaded when it is first requested, and kept. If there is too
-/// little memory to load it, the next request tries again. Several threads may use a store; they compile different
-/// kernels at the same time.
+/// The kernels for one architecture. Each kernel is compiled and loaded when it is first requested, and kept. If there
+/// is too little memory to load it, the next request tries again. Several threads may use a store; they compile
+/// different kernels at the same time.
 class KernelStore {
  public:
+  /// The store of all simulators and searches of this process on GPUs of an architecture, so that each kernel is
+  /// compiled and loaded once. It exists as long as one of them holds it.
+  static std::shared_ptr<KernelStore> of_architecture(const std::string& architecture);
+
   /// `more` holds source files in addition to the embedded ones. They must outlive the store.
   explicit KernelStore(std::string architecture, std::span<const EmbeddedSource> more = {})
       : architecture_(std::move(architecture)), more_(more) {}

@@ -1,19 +1,8 @@
 #include "cuda/runtime/memory_store.hpp"
 
 #include <algorithm>
-#include <map>
 
 namespace evodevo::cuda {
-
-std::shared_ptr<MemoryStore> MemoryStore::of_device(const Device& device) {
-  static std::mutex mutex;
-  static std::map<int, std::weak_ptr<MemoryStore>> stores;
-  const std::lock_guard lock(mutex);
-  std::weak_ptr<MemoryStore>& current = stores[device.number];
-  std::shared_ptr<MemoryStore> store = current.lock();
-  if (!store) current = store = std::make_shared<MemoryStore>();
-  return store;
-}
 
 std::size_t MemoryStore::available() {
   const std::lock_guard lock(mutex_);

@@ -13,13 +13,9 @@
 namespace evodevo::cuda {
 
 /// Lends memory and keeps returned memory for the next loan, because allocation makes the device wait. Several threads
-/// may use a store.
+/// may use a store; they must work on its device.
 class MemoryStore {
  public:
-  /// The store of all simulators and searches of this process on a GPU, so that memory kept from one is available to
-  /// the others. It exists as long as one of them holds it. Threads that use it must work on this GPU.
-  static std::shared_ptr<MemoryStore> of_device(const Device& device);
-
   /// Holds memory until it is destroyed.
   class Loan {
    public:

@@ -1,4 +1,5 @@
-"""How the runs of a comparison are started: as processes, as groups of ranks, or as the tasks of a job array."""
+"""How the runs of a comparison are started: one after the other, several in one process, as groups of ranks, or as the
+tasks of a job array."""
 
 import dataclasses
 import os
@@ -16,7 +17,7 @@ SCRIPT = pathlib.Path(__file__).parents[2] / "cluster" / "run.sbatch"
 class Launcher:
     command: tuple = ()  # words before the command of a run
     options: tuple = ()  # options of the run
-    gpus: tuple = ()  # the GPUs of this host, if each run is to use one of them alone
+    in_one_process: bool = False  # all runs, which share its GPUs
 
 
 def refuse_options(given):
@@ -30,7 +31,7 @@ def launcher(given):
     """Returns the launcher of each run, for `given.jobs` runs at once."""
     jobs = given.jobs or 1
     if given.launcher == "local":
-        return Launcher(options=threads(jobs), gpus=gpus(jobs)) if jobs > 1 else Launcher()
+        return Launcher(in_one_process=jobs > 1)
     if "SLURM_JOB_ID" in os.environ:
         return steps(given.ranks, jobs)
     if not given.ranks:
@@ -39,24 +40,6 @@ def launcher(given):
         raise Failure("--launcher mpi: there is no mpirun; install Open MPI (Debian: openmpi-bin), or load its module")
     # several calls of mpirun do not know of each other, and would bind their ranks to the same cores
     return Launcher(("mpirun", "--bind-to", "none", "-n", given.ranks), threads(jobs * given.ranks))
-
-
-def gpus(jobs):
-    """Returns the GPUs of this host if so many runs at once can use them all with one GPU for each run. Fewer runs use
-    all GPUs together."""
-    visible = os.environ.get("CUDA_VISIBLE_DEVICES")
-    found = tuple(visible.split(",")) if visible is not None else listed_gpus()
-    return found if 1 < len(found) <= jobs else ()
-
-
-def listed_gpus():
-    try:
-        listed = subprocess.run(
-            ["nvidia-smi", "--query-gpu=uuid", "--format=csv,noheader"], capture_output=True, text=True
-        )
-    except OSError:
-        return ()
-    return tuple(listed.stdout.split()) if listed.returncode == 0 else ()
 
 
 def threads(shares):

@@ -8,15 +8,15 @@ import json
 import os
 import pathlib
 import shutil
-import signal
 import sqlite3
 import subprocess
 import tomllib
 import urllib.parse
 
-from common.command_line import Failure, Interrupted
+from common.command_line import Failure
 
 from . import rows
+from .together import run_many, stop
 
 STOPPED = 130  # exit status of a run that was asked to stop; it has finished its generation and can be resumed
 
@@ -204,33 +204,54 @@ class Runs:
                 )
 
     def make(self, jobs, launcher, tell):
-        """Makes or resumes all runs that are not finished, `jobs` at a time, each with the launcher and, if
-        the launcher has GPUs, on the one that the fewest runs use. A run that fails is tried once more, because the reason
-        may be the host's, such as a GPU that another program holds."""
-        waiting = self.waiting()
-        active, gpus, failed = {}, {}, set()
-        try:
-            while waiting or active:
-                while waiting and len(active) < jobs:
-                    run = waiting.pop(0)
-                    in_use = [gpus[other] for other in active]
-                    gpus[run] = min(launcher.gpus, key=in_use.count, default=None)
-                    active[run] = self._start(run, launcher, gpus[run])
-                    tell(f"{run.variant.name}, seed {run.seed} ({len(waiting)} more to start)")
-                os.waitid(os.P_ALL, 0, os.WEXITED | os.WNOWAIT)
-                for run in [run for run, process in active.items() if process.poll() is not None]:
+        """Makes or resumes all runs that are not finished, `jobs` at a time, with the launcher. A run that fails is tried
+        once more, because the reason may be the host's, such as a GPU that another program holds."""
+        make = self._in_one_process if launcher.in_one_process else self._as_processes
+        waiting, failed = self.waiting(), set()
+        while waiting:
+            again = []
+            with contextlib.closing(make(waiting, jobs, launcher, tell)) as ended:
+                for run, code in ended:
                     try:
-                        self._require_success(run, active.pop(run).returncode)
+                        self._require_success(run, code)
                     except RunFailure as failure:
                         if run in failed:
                             raise
                         failed.add(run)
-                        waiting.append(run)
+                        again.append(run)
                         tell(f"tried once more: {failure}")
                     else:
                         rows.write(run.row, self._shown(run))
+            waiting = again
+
+    def _as_processes(self, runs, jobs, launcher, tell):
+        """Makes runs as processes, `jobs` at a time. Yields each run with its exit code when it has ended."""
+        waiting, active = list(runs), {}
+        try:
+            while waiting or active:
+                while waiting and len(active) < jobs:
+                    run = waiting.pop(0)
+                    active[run] = self._start(run, launcher)
+                    tell(f"{run.variant.name}, seed {run.seed} ({len(waiting)} more to start)")
+                os.waitid(os.P_ALL, 0, os.WEXITED | os.WNOWAIT)
+                for run in [run for run, process in active.items() if process.poll() is not None]:
+                    yield run, active.pop(run).returncode
         finally:
             stop(active.values())
+
+    def _in_one_process(self, runs, jobs, _, tell):
+        """The same with one process for all runs."""
+        for run in runs:
+            self.clear(run)
+            run.log.parent.mkdir(parents=True, exist_ok=True)
+        left = len(runs)
+        tell(f"{left} runs, up to {jobs} at once")
+        arguments = [[*self.arguments(run), "--resume"] for run in runs]
+        with contextlib.closing(run_many(self._program, arguments, jobs)) as ended:
+            for index, code in ended:
+                left -= 1
+                tell(f"{runs[index].variant.name}, seed {runs[index].seed} has ended ({left} more)")
+                yield runs[index], code
 
     def waiting(self):
         """Returns the runs that are not complete, after writing the rows of those that are and have none yet."""
@@ -274,7 +295,7 @@ class Runs:
         if not self._has_begun(run):
             shutil.rmtree(run.folder, ignore_errors=True)
 
-    def _start(self, run, launcher, gpu):
+    def _start(self, run, launcher):
         self.clear(run)
         run.log.parent.mkdir(parents=True, exist_ok=True)
         command = [*launcher.command, self._program, "run", *self.arguments(run), "--resume", *launcher.options]
@@ -285,7 +306,6 @@ class Runs:
                 stdout=log,
                 stderr=subprocess.STDOUT,
                 process_group=0,
-                env=os.environ | ({"CUDA_VISIBLE_DEVICES": gpu} if gpu else {}),
             )
 
     def _evodevo(self, *arguments):
@@ -298,22 +318,9 @@ class Runs:
     @staticmethod
     def _require_success(run, code):
         if code != 0:
-            last = "\n  ".join(run.log.read_text().splitlines()[-3:])
+            last = "\n  ".join(run.log.read_text().splitlines()[-3:]) if run.log.exists() else "it had not begun"
             # a run counts as stopped if a signal ended it or it was asked to stop; otherwise it failed
             stopped = code < 0 or code == STOPPED
             remedy = "the same command goes on from there" if stopped else "mend that and give the same command again"
             reason = f"{run.folder}: the run ended with {code}:\n  {last}\n{remedy}"
             raise Failure(reason) if stopped else RunFailure(run, reason)
-
-
-def stop(processes):
-    """Asks each process to stop after its generation, and waits for it. A second interruption repeats the request, at
-    which the processes stop without finishing their generation."""
-    while alive := [process for process in processes if process.poll() is None]:
-        try:
-            for process in alive:
-                process.send_signal(signal.SIGUSR1)  # which mpirun and srun forward, unlike SIGTERM
-            for process in alive:
-                process.wait()
-        except Interrupted:
-            continue

@@ -1,0 +1,130 @@
+// evodevo run-many.
+#include <atomic>
+#include <fstream>
+#include <iostream>
+#include <mutex>
+#include <nlohmann/json.hpp>
+
+#include "base/text.hpp"
+#include "cluster/ranks.hpp"
+#include "commands/commands.hpp"
+#include "commands/run/early_end.hpp"
+#include "commands/run/run.hpp"
+#include "commands/shell/complaint.hpp"
+#include "commands/shell/output_of_thread.hpp"
+#include "experiment/device.hpp"
+#include "threads/parallel.hpp"
+
+namespace evodevo {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The number of runs that are made at once: as the user says, otherwise one for each core.
+std::size_t given_jobs(const Given& given) {
+  if (!given.contains("jobs")) return static_cast<std::size_t>(thread_count(0));
+  const int jobs = given["jobs"].as<int>();
+  if (jobs < 1) throw UsageError("--jobs " + std::to_string(jobs) + ": expected a whole number of at least 1");
+  return static_cast<std::size_t>(jobs);
+}
+
+/// Reads the arguments of a run. `place` names the line, for errors.
+Arguments arguments_in(const std::string& line, const std::string& place) {
+  const auto json = nlohmann::json::parse(line, nullptr, false);
+  const auto is_text = [](const auto& item) { return item.is_string(); };
+  if (!json.is_array() || json.empty() || !std::all_of(json.begin(), json.end(), is_text))
+    throw UsageError(place +
+                     ": expected a JSON array of texts, the arguments of one `run`, such as [\"evo.toml\", \"--seed\", "
+                     "\"2\", \"--out\", \"runs/2\"]");
+  return json.get<Arguments>();
+}
+
+/// Returns the values of the arguments in a line. Runs that do not say how many threads they use have `threads`.
+Given read_line(const std::string& line, const std::string& place, std::size_t threads) {
+  Arguments arguments = arguments_in(line, place);
+  const auto refuse = [&](const std::string& option, const std::string& remedy) {
+    throw UsageError(place + ": " + option + ": " + remedy);
+  };
+  try {
+    if (!parse(run_command(), arguments).contains("threads"))
+      arguments.insert(arguments.end(), {"--threads", std::to_string(threads)});
+    Given given = parse(run_command(), arguments);
+    if (given.contains("help") || !given.contains("out")) refuse("--out", "missing; give each run a folder");
+    if (given.contains("until")) refuse("--until", "it would end all runs of this process; leave it out");
+    return given;
+  } catch (const UsageError& error) {
+    if (std::string(error.what()).starts_with(place)) throw;
+    throw UsageError(place + ": " + error.what());
+  }
+}
+
+std::vector<Given> read_runs(const std::string& file, std::size_t threads) {
+  std::ifstream opened;
+  if (file != "-") opened.open(file);
+  std::istream& stream = file == "-" ? std::cin : opened;
+  if (!stream) throw UsageError(printable(file) + ": cannot be read; give a file with a line for each run, or -");
+  std::vector<Given> runs;
+  std::string line;
+  for (int number = 1; std::getline(stream, line); ++number)
+    if (!line.empty()) runs.push_back(read_line(line, printable(file) + ':' + std::to_string(number), threads));
+  return runs;
+}
+
+/// Makes a run, and returns its exit code.
+int made(const Given& run) {
+  fs::path log = run["out"].as<std::string>();
+  log += ".log";
+  std::error_code error;
+  fs::create_directories(fs::absolute(log).parent_path(), error);
+  std::ofstream stream(log, std::ios::app);
+  if (!stream) {
+    std::cerr << "evodevo: " + printable(log.string()) + ": cannot be written; give the run another --out\n";
+    return 2;
+  }
+  const OutputOfThread output(*stream.rdbuf());
+  return or_complain([&] { return make_run(run); });
+}
+
+int run_many(const Given& given) {
+  if (started_processes() > 1)
+    throw UsageError("run-many: it makes its runs in one process; start it without mpirun or srun");
+  stop_on_signals();
+  never_end_on_signals();
+  const std::size_t jobs = given_jobs(given);
+  const std::size_t threads = std::max<std::size_t>(1, static_cast<std::size_t>(thread_count(0)) / jobs);
+  const std::vector<Given> runs = read_runs(given["FILE"].as<std::string>(), threads);
+  usable_gpus();  // prepares the environment for the driver before there are other threads
+  std::atomic<std::size_t> next = 0;
+  std::mutex mutex;
+  int worst = 0;
+  on_own_threads(std::min(jobs, runs.size()), [&](std::size_t) {
+    for (std::size_t i = next++; i < runs.size() && !stop_requested(); i = next++) {
+      const int code = made(runs[i]);
+      const std::lock_guard lock(mutex);
+      std::cout << nlohmann::ordered_json{{"run", i}, {"exit_code", code}}.dump() << std::endl;
+      worst = std::max(worst, code == 0 ? 0 : 1);
+    }
+  });
+  return stop_requested() ? ended_early : worst;
+}
+
+}  // namespace
+
+Command run_many_command() {
+  Options options;
+  options.add_options()("jobs", value<int>("N"), "runs at once; default: one for each core");
+  return {
+      .name = "run-many",
+      .arguments = {{"FILE"}},
+      .summary = "Make many runs in one process",
+      .text = {"The runs share the GPUs, so that small populations keep them busy together. FILE, or standard input if "
+               "it is -, has a line for each run: a JSON array with the arguments of `run`. What a run prints goes to "
+               "the file OUT.log beside its folder OUT. When a run has ended, a JSON object with its number, counted "
+               "from 0, and its exit code is printed. A run that fails does not end the others. SIGINT, SIGTERM and "
+               "SIGUSR1 end all runs after their generations."},
+      .examples = {"run-many runs.jsonl --jobs 16"},
+      .options = options,
+      .function = run_many};
+}
+
+}  // namespace evodevo

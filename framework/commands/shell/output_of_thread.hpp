@@ -1,0 +1,21 @@
+// Where a thread's output goes, if a process makes several runs.
+#pragma once
+
+#include <streambuf>
+
+namespace evodevo {
+
+/// While this object exists, what its thread prints through std::cout and std::cerr goes to `target` instead of
+/// standard output and standard error. Threads that the thread starts are not concerned.
+class OutputOfThread {
+ public:
+  explicit OutputOfThread(std::streambuf& target);
+  OutputOfThread(const OutputOfThread&) = delete;
+  OutputOfThread& operator=(const OutputOfThread&) = delete;
+  ~OutputOfThread();
+};
+
+/// Whether what this thread prints through std::cout is seen on a terminal.
+bool prints_on_terminal();
+
+}  // namespace evodevo
