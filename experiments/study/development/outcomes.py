@@ -17,13 +17,13 @@ import argparse
 import collections
 import concurrent.futures
 import contextlib
+import dataclasses
 import functools
 import itertools
 import json
 import math
 import os
 import pathlib
-import queue
 import sqlite3
 import statistics
 import subprocess
@@ -35,10 +35,11 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.append(str(HERE.parents[2] / "tools/parts"))
 
 from common.command_line import positive  # noqa: E402
-from compare import launchers, rows  # noqa: E402
+from compare import rows  # noqa: E402
 from compare.history import history, objective_of  # noqa: E402
 from compare.scenarios import by_scenario  # noqa: E402
 from compare.standings import median_with_interval, table  # noqa: E402
+from compare.together import run_many  # noqa: E402
 
 LIVES = 3
 ALONE = ("population=1", "random_individuals=0", "evaluations=1", "verify=0")
@@ -47,41 +48,51 @@ GENERATIONS = (1, 2, 4)  # after which the distance on the slope is told
 BODIES = 10  # of each population
 
 
+@dataclasses.dataclass(frozen=True)
+class Further:
+    """A run that begins with the population of another one."""
+
+    name: str
+    experiment: str
+    settings: tuple
+    start: pathlib.Path
+    seed: int
+
+    def row(self, out):
+        return out / "rows" / f"{self.name}.json"
+
+    def folder(self, out):
+        return out / "runs" / self.name
+
+    def arguments(self, out):
+        """Returns the arguments of the program, after writing the experiment."""
+        file = out / "experiments" / f"{self.name}.toml"
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(self.experiment)
+        settings = (*self.settings, f"experiment.start={self.start.resolve()}")
+        words = [word for setting in settings for word in ("--set", setting)]
+        return [file, *words, "--seed", self.seed, "--out", self.folder(out), "--resume", "--no-report"]
+
+
 class Program:
-    """The program evodevo, of which at most `jobs` run at once, and share the cores and GPUs of this host."""
+    """The program evodevo, of which up to `jobs` processes or runs work at once."""
 
     def __init__(self, path, jobs):
-        self._path, self._threads = path, launchers.threads(jobs)
-        self._gpus = queue.Queue()  # those that are free; one GPU is there as many times as runs may use it
-        for gpu in itertools.islice(itertools.cycle(launchers.gpus(jobs) or (None,)), jobs):
-            self._gpus.put(gpu)
-
-    def run(self, *words):
-        gpu = self._gpus.get()
-        try:
-            environment = os.environ | ({"CUDA_VISIBLE_DEVICES": gpu} if gpu else {})
-            command = [self._path, "run", *map(str, (*words, *self._threads))]
-            subprocess.run(command, check=True, stdout=subprocess.DEVNULL, env=environment)
-        finally:
-            self._gpus.put(gpu)
+        self._path, self.jobs = path, jobs
 
     def json(self, *words):
         """Returns what a command prints."""
         done = subprocess.run([self._path, *map(str, words)], check=True, capture_output=True, text=True)
         return json.loads(done.stdout)
 
-
-def measured(program, out, name, experiment, settings, start, seed):
-    """Makes a run that begins with the population of the run in `start`, unless it has a row. Returns the row."""
-    row = out / "rows" / f"{name}.json"
-    if not row.exists():
-        file, folder = out / "experiments" / f"{name}.toml", out / "runs" / name
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(experiment)
-        words = [word for setting in (*settings, f"experiment.start={start.resolve()}") for word in ("--set", setting)]
-        program.run(file, *words, "--seed", seed, "--out", folder, "--resume", "--no-report", "--quiet")
-        rows.write(row, program.json("show", folder, "--json"))
-    return rows.read(row)
+    def make(self, out, runs):
+        """Makes those of the runs that have no row."""
+        waiting = [run for run in runs if not run.row(out).exists()]
+        for index, code in run_many(self._path, [run.arguments(out) for run in waiting], self.jobs):
+            run = waiting[index]
+            if code:
+                sys.exit(f"{run.folder(out)}: the run ended with {code}; see {run.folder(out)}.log")
+            rows.write(run.row(out), self.json("show", run.folder(out), "--json"))
 
 
 class Arm:
@@ -98,28 +109,43 @@ class Arm:
         return self._rows / f"{run.name}.json"
 
     def settings(self, *more):
-        return [*self._settings, *more]
+        return (*self._settings, *more)
 
 
-def in_scenarios(program, out, arm, run):
-    """Returns the distances of the best robot of a run by scenario, each the mean of several lives."""
+def lives_in_scenarios(arm, run):
+    """Returns the runs in which the best robot of a run is born again in the scenarios."""
     experiment = f"{arm.experiment}\n{(HERE / 'scenarios.txt').read_text()}"
     settings = arm.settings(*(f"experiment.{setting}" for setting in ALONE))
+    names = {life: f"scenarios/{arm.name}/{run.name}-life-{life}" for life in range(1, LIVES + 1)}
+    return [Further(name, experiment, settings, run, life) for life, name in names.items()]
+
+
+def in_scenarios(_, out, arm, run):
+    """Returns the distances of the best robot of a run by scenario, each the mean of several lives."""
     lives = collections.defaultdict(list)
-    for life in range(1, LIVES + 1):
-        name = f"scenarios/{arm.name}/{run.name}-life-{life}"
-        shown = measured(program, out, name, experiment, settings, run, life)
+    for life in lives_in_scenarios(arm, run):
+        shown = rows.read(life.row(out))
         for scenario, score in by_scenario(shown["best"], objective_of(shown["objectives"][0])).items():
             lives[scenario].append(score)
     return {scenario: statistics.fmean(scores) for scenario, scores in lives.items()}
 
 
-def on_the_slope(program, out, arm, run):
+def population_of(arm, run):
+    return rows.read(arm.row(run))["generations"][0]["evaluations"]
+
+
+def move_to_the_slope(arm, run):
+    """Returns the run in which the last population of a run goes on to evolve on a slope."""
+    evaluations = f"experiment.evaluations={GENERATIONS[-1] * population_of(arm, run)}"
+    settings = arm.settings(MOVE, evaluations, "experiment.verify=0")
+    return Further(f"slope/{arm.name}/{run.name}", arm.experiment, settings, run, int(run.name.split("-")[1]))
+
+
+def on_the_slope(_, out, arm, run):
     """Returns the best distance so far after each of GENERATIONS on the slope."""
-    population = rows.read(arm.row(run))["generations"][0]["evaluations"]
-    settings = arm.settings(MOVE, f"experiment.evaluations={GENERATIONS[-1] * population}", "experiment.verify=0")
-    shown = measured(program, out, f"slope/{arm.name}/{run.name}", arm.experiment, settings, run, int(run.name.split("-")[1]))
+    shown = rows.read(move_to_the_slope(arm, run).row(out))
     past = history(shown, objective_of(shown["objectives"][0]))
+    population = population_of(arm, run)
     return {f"after {count * population} evaluations": past.at("generations", count, "best") for count in GENERATIONS}
 
 
@@ -207,6 +233,9 @@ def main():
     arms = [Arm(file.parent) for file in sorted(folder.glob("rows/*/made-from.json"))]
     if not arms:
         sys.exit(f"{folder}: has no complete runs; give the folder that tools/compare wrote, which holds rows/ and runs/")
+    of_all = [(arm, run) for arm in arms for run in arm.runs]
+    lives = [life for arm, run in of_all for life in lives_in_scenarios(arm, run)]
+    program.make(out, [*lives, *(move_to_the_slope(arm, run) for arm, run in of_all)])
     with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
 
         def begin(measure):
