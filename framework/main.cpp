@@ -8,8 +8,8 @@
 #include "base/output_file.hpp"
 #include "base/standard_streams.hpp"
 #include "commands/commands.hpp"
-#include "commands/shell/complaint.hpp"
 #include "commands/shell/help.hpp"
+#include "commands/shell/output/complaint.hpp"
 #include "operators/call_watch.hpp"
 #include "operators/crash.hpp"
 

@@ -10,8 +10,8 @@
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "commands/commands.hpp"
-#include "commands/shell/notices.hpp"
 #include "commands/shell/options.hpp"
+#include "commands/shell/output/notices.hpp"
 #include "evolution/resimulation.hpp"
 #include "report/life_events.hpp"
 

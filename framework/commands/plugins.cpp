@@ -15,8 +15,8 @@
 #include "base/output_file.hpp"
 #include "base/text.hpp"
 #include "commands/commands.hpp"
-#include "commands/shell/notices.hpp"
 #include "commands/shell/options.hpp"
+#include "commands/shell/output/notices.hpp"
 #include "conformance/conformance.hpp"
 #include "operators/loader.hpp"
 

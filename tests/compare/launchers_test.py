@@ -77,21 +77,30 @@ class Launchers(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(self.results("ranks"), self.results("local"))
 
-    def test_runs_at_once_have_one_gpu_each(self):
-        self.assertEqual(self.gpus_of_runs("--jobs", "2"), {"7", "9"})
-        self.assertEqual(self.gpus_of_runs("--jobs", "3"), {"7", "9"})
-        self.assertEqual(self.gpus_of_runs("--jobs", "1"), {"7,9"})
-
-    def gpus_of_runs(self, *words):
-        """Returns the GPUs that the runs of a comparison see on a host that has the GPUs 7 and 9."""
-        seen, program = self.folder / "seen", self.folder / "program"
-        seen.write_text("")
-        record = f'[ "$1" != run ] || echo "$CUDA_VISIBLE_DEVICES" >>{shlex.quote(str(seen))}'
-        program.write_text(f'#!/bin/sh\n{record}\nexec {shlex.quote(os.environ["EVODEVO_PROGRAM"])} "$@"\n')
+    def program(self, before):
+        """Returns a program that first executes `before`, in which $1 is the command, and then is evodevo."""
+        program = self.folder / "program"
+        program.write_text(f'#!/bin/sh\n{before}\nexec {shlex.quote(os.environ["EVODEVO_PROGRAM"])} "$@"\n')
         program.chmod(0o755)
-        done = self.compare(f"{words[-1]}-at-once", *words, EVODEVO_PROGRAM=str(program), CUDA_VISIBLE_DEVICES="7,9")
+        return str(program)
+
+    def test_runs_at_once_are_those_of_one_process(self):
+        self.assertEqual(self.compare("alone").returncode, 0)
+        seen = self.folder / "seen"
+        program = self.program(f'echo "$1" >>{shlex.quote(str(seen))}')
+        done = self.compare("together", "--jobs", "3", EVODEVO_PROGRAM=program)
         self.assertEqual(done.returncode, 0, done.stderr)
-        return set(seen.read_text().split())
+        self.assertEqual([word for word in seen.read_text().split() if word.startswith("run")], ["run-many"])
+        self.assertEqual(self.results("together"), self.results("alone"))
+
+    def test_the_death_of_their_process_loses_no_run(self):
+        self.assertEqual(self.compare("alone").returncode, 0)
+        killer = self.program('[ "$1" != run-many ] || kill -9 $$')
+        done = self.compare("together", "--jobs", "3", EVODEVO_PROGRAM=killer)
+        self.assertEqual(done.returncode, 2)
+        self.assertRegex(done.stderr, "together/runs/plain/seed-1: .*-9.*(?s:.*)the same command goes on")
+        self.assertEqual(self.compare("together", "--jobs", "3").returncode, 0)
+        self.assertEqual(self.results("together"), self.results("alone"))
 
     def test_options_of_another_launcher_are_refused(self):
         self.assertRegex(self.refused("--ranks", "3"), "--ranks: .*--launcher mpi.*local")

@@ -1,5 +1,5 @@
 // What commands print on terminals.
-#include "commands/shell/terminal.hpp"
+#include "commands/shell/output/terminal.hpp"
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -13,7 +13,7 @@
 #include "commands/run/generation_log.hpp"
 #include "commands/run/page.hpp"
 #include "commands/shell/command.hpp"
-#include "commands/shell/excerpt.hpp"
+#include "commands/shell/output/excerpt.hpp"
 #include "support/messages.hpp"
 #include "support/scratch.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "base/text.hpp"
 #include "commands/run/progress.hpp"
-#include "commands/shell/notices.hpp"
+#include "commands/shell/output/notices.hpp"
 
 namespace evodevo {
 

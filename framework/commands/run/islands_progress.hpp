@@ -6,7 +6,7 @@
 #include <mutex>
 #include <vector>
 
-#include "commands/shell/terminal.hpp"
+#include "commands/shell/output/terminal.hpp"
 #include "evolution/evolution.hpp"
 
 namespace evodevo {

@@ -7,7 +7,7 @@
 
 #include "base/output_file.hpp"
 #include "base/text.hpp"
-#include "commands/shell/notices.hpp"
+#include "commands/shell/output/notices.hpp"
 #include "report/page.hpp"
 #include "report/report.hpp"
 

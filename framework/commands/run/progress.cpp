@@ -6,8 +6,8 @@
 #include <iostream>
 
 #include "base/text.hpp"
-#include "commands/shell/notices.hpp"
-#include "commands/shell/output_of_thread.hpp"
+#include "commands/shell/output/notices.hpp"
+#include "commands/shell/output/output_of_thread.hpp"
 
 namespace evodevo {
 namespace {

@@ -5,7 +5,7 @@
 #include <chrono>
 
 #include "cluster/farm.hpp"
-#include "commands/shell/terminal.hpp"
+#include "commands/shell/output/terminal.hpp"
 #include "evolution/evolution.hpp"
 
 namespace evodevo {

@@ -10,8 +10,8 @@
 #include "commands/commands.hpp"
 #include "commands/run/early_end.hpp"
 #include "commands/run/run.hpp"
-#include "commands/shell/complaint.hpp"
-#include "commands/shell/output_of_thread.hpp"
+#include "commands/shell/output/complaint.hpp"
+#include "commands/shell/output/output_of_thread.hpp"
 #include "experiment/device.hpp"
 #include "threads/parallel.hpp"
 

@@ -8,7 +8,7 @@
 
 #include "base/text.hpp"
 #include "commands/shell/help.hpp"
-#include "commands/shell/notices.hpp"
+#include "commands/shell/output/notices.hpp"
 #include "evolution/archive/archive.hpp"
 
 namespace evodevo {

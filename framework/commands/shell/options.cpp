@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "base/text.hpp"
-#include "commands/shell/notices.hpp"
+#include "commands/shell/output/notices.hpp"
 #include "evolution/resimulation.hpp"
 #include "experiment/device.hpp"
 #include "experiment/toml_reader.hpp"

@@ -5,7 +5,7 @@
 #include <iostream>
 
 #include "base/text.hpp"
-#include "commands/shell/notices.hpp"
+#include "commands/shell/output/notices.hpp"
 #include "evolution/resimulation.hpp"
 
 namespace evodevo {

@@ -1,4 +1,4 @@
-#include "commands/shell/complaint.hpp"
+#include "commands/shell/output/complaint.hpp"
 
 #include <unistd.h>
 
@@ -6,8 +6,8 @@
 #include <sstream>
 
 #include "base/text.hpp"
-#include "commands/shell/excerpt.hpp"
-#include "commands/shell/terminal.hpp"
+#include "commands/shell/output/excerpt.hpp"
+#include "commands/shell/output/terminal.hpp"
 #include "experiment/config_errors.hpp"
 #include "experiment/device.hpp"
 

@@ -1,4 +1,4 @@
-#include "commands/shell/excerpt.hpp"
+#include "commands/shell/output/excerpt.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "commands/shell/notices.hpp"
+#include "commands/shell/output/notices.hpp"
 
 #include <unistd.h>
 

@@ -1,4 +1,4 @@
-#include "commands/shell/output_of_thread.hpp"
+#include "commands/shell/output/output_of_thread.hpp"
 
 #include <unistd.h>
 

@@ -1,4 +1,4 @@
-#include "commands/shell/terminal.hpp"
+#include "commands/shell/output/terminal.hpp"
 
 #include <sys/ioctl.h>
 #include <unistd.h>
