@@ -84,10 +84,11 @@ TEST_F(RunMany, RunsAreTheSameAsAlone) {
 
 TEST_F(RunMany, ARunThatFailsDoesNotEndOthers) {
   const Finished finished = testing::run(command(
-      {arguments("wrong", {"--set", "experiment.population=none"}), arguments("right"), arguments("wrong/of")}, 1));
+      {arguments("wrong", {"--set", "experiment.population=none"}), arguments("right"), arguments("wrong/of/")}, 1));
   EXPECT_EQ(finished.exit_code, 1) << finished.output;
   EXPECT_EQ(codes(finished.output), (std::map<int, int>{{0, 2}, {1, 0}, {2, 0}}));
   EXPECT_THAT(log_of("wrong"), testing::naming("experiment.population", "\"none\"", "expected"));
+  EXPECT_THAT(log_of("wrong/of"), testing::naming("best: individual"));
   EXPECT_EQ(Archive::read(scratch_ / "right").generations().back().evaluations, 24);
 }
 
@@ -104,6 +105,9 @@ TEST_F(RunMany, WrongLinesAreRefusedBeforeAnyRunBegins) {
   expect_refused(Json(Words{file_}).dump(), "--out", "folder");
   expect_refused(Json(arguments("second", {"--until", "2h"})).dump(), "--until", "leave it out");
   expect_refused(Json(arguments("second", {"--sede", "2"})).dump(), "--sede");
+  const Finished empty = testing::run({EVODEVO_PROGRAM, "run-many", scratch_.write("empty.jsonl", "\n")});
+  EXPECT_EQ(empty.exit_code, 2);
+  EXPECT_THAT(empty.output, testing::naming("empty.jsonl", "no runs"));
   const Finished missing = testing::run({EVODEVO_PROGRAM, "run-many", (scratch_ / "none").string()});
   EXPECT_EQ(missing.exit_code, 2);
   EXPECT_THAT(missing.output, testing::naming((scratch_ / "none").string(), "cannot be read"));

@@ -2,6 +2,7 @@
 #include "analysis/ground.hpp"
 #include "gpu.hpp"
 #include "physics/scenes.hpp"
+#include "threads/parallel.hpp"
 
 namespace evodevo::testing_gpu {
 namespace {
@@ -78,6 +79,38 @@ TEST_P(Determinism, BesideBodiesOfOtherSteps) {
       expect_same_bits(together[i], alone);
     }
   }
+}
+
+TEST(DeterminismOfSimulators, SideBySideAsAlone) {
+  EVODEVO_NEEDS_GPU();
+  const Scene scene = walking_scene();
+  const std::vector<Stepping> ways{{Method::paper_euler, Precision::float32},
+                                   {Method::paper_euler, Precision::float64},
+                                   {Method::rk4, Precision::float32},
+                                   {Method::xpbd, Precision::float32},
+                                   {Method::paper_euler, Precision::float32}};
+  const auto robots_of = [&](std::size_t i) {
+    std::vector<Robot> robots;
+    for (std::uint32_t k = 0; k < 12; ++k) {
+      const Body body = random_body(20 + 61 * k, 15, k);
+      robots.emplace_back(body, moving_state(body, scene, i));
+    }
+    return robots;
+  };
+  const auto simulate_all = [&](std::vector<Robot>& robots, std::size_t i) {
+    std::vector<Robot*> batch;
+    for (Robot& robot : robots) batch.push_back(&robot);
+    simulate(*make_cuda_simulator(scene, ways[i]), batch, 700, {.stress = true, .work = true});
+  };
+  std::vector<std::vector<Robot>> alone, together;
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    alone.push_back(robots_of(i));
+    simulate_all(alone.back(), i);
+    together.push_back(robots_of(i));
+  }
+  on_own_threads(ways.size(), [&](std::size_t i) { simulate_all(together[i], i); });
+  for (std::size_t i = 0; i < ways.size(); ++i)
+    for (std::size_t k = 0; k < alone[i].size(); ++k) expect_same_bits(alone[i][k], together[i][k]);
 }
 
 TEST_P(Determinism, BesideBodiesWithAndWithoutMuscles) {

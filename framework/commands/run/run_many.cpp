@@ -1,10 +1,13 @@
 // evodevo run-many.
+#include <algorithm>
 #include <atomic>
 #include <fstream>
 #include <iostream>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
+#include "base/input_file.hpp"
 #include "base/text.hpp"
 #include "cluster/ranks.hpp"
 #include "commands/commands.hpp"
@@ -20,6 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t most_bytes = 64 << 20;  // of the file of runs
+
 /// The number of runs that are made at once: as the user says, otherwise one for each core.
 std::size_t given_jobs(const Given& given) {
   if (!given.contains("jobs")) return static_cast<std::size_t>(thread_count(0));
@@ -32,50 +37,52 @@ std::size_t given_jobs(const Given& given) {
 Arguments arguments_in(const std::string& line, const std::string& place) {
   const auto json = nlohmann::json::parse(line, nullptr, false);
   const auto is_text = [](const auto& item) { return item.is_string(); };
-  if (!json.is_array() || json.empty() || !std::all_of(json.begin(), json.end(), is_text))
+  if (!json.is_array() || json.empty() || !std::ranges::all_of(json, is_text))
     throw UsageError(place +
                      ": expected a JSON array of texts, the arguments of one `run`, such as [\"evo.toml\", \"--seed\", "
                      "\"2\", \"--out\", \"runs/2\"]");
   return json.get<Arguments>();
 }
 
-/// Returns the values of the arguments in a line. Runs that do not say how many threads they use have `threads`.
+/// Returns the values of the arguments in a line. A run that does not say how many threads it uses has `threads`.
 Given read_line(const std::string& line, const std::string& place, std::size_t threads) {
   Arguments arguments = arguments_in(line, place);
-  const auto refuse = [&](const std::string& option, const std::string& remedy) {
-    throw UsageError(place + ": " + option + ": " + remedy);
-  };
+  const auto is_about_threads = [](const std::string& word) { return word.starts_with("--threads"); };
+  if (std::ranges::none_of(arguments, is_about_threads))
+    arguments.insert(arguments.end(), {"--threads", std::to_string(threads)});
+  Given given;
   try {
-    if (!parse(run_command(), arguments).contains("threads"))
-      arguments.insert(arguments.end(), {"--threads", std::to_string(threads)});
-    Given given = parse(run_command(), arguments);
-    if (given.contains("help") || !given.contains("out")) refuse("--out", "missing; give each run a folder");
-    if (given.contains("until")) refuse("--until", "it would end all runs of this process; leave it out");
-    return given;
+    given = parse(run_command(), arguments);
   } catch (const UsageError& error) {
-    if (std::string(error.what()).starts_with(place)) throw;
     throw UsageError(place + ": " + error.what());
   }
+  if (!given.contains("out")) throw UsageError(place + ": --out: missing; give each run a folder");
+  for (const char* option : {"help", "until"})
+    if (given.contains(option)) throw UsageError(place + ": --" + option + ": is for a single run; leave it out");
+  return given;
 }
 
 std::vector<Given> read_runs(const std::string& file, std::size_t threads) {
-  std::ifstream opened;
-  if (file != "-") opened.open(file);
-  std::istream& stream = file == "-" ? std::cin : opened;
-  if (!stream) throw UsageError(printable(file) + ": cannot be read; give a file with a line for each run, or -");
+  std::istringstream lines(read_input_file(file, most_bytes));
   std::vector<Given> runs;
   std::string line;
-  for (int number = 1; std::getline(stream, line); ++number)
+  for (int number = 1; std::getline(lines, line); ++number)
     if (!line.empty()) runs.push_back(read_line(line, printable(file) + ':' + std::to_string(number), threads));
+  if (runs.empty()) throw UsageError(printable(file) + ": has no runs; give a file with a line for each run");
   return runs;
+}
+
+/// Returns the file for what a run in a folder prints.
+fs::path log_of(const fs::path& folder) {
+  const fs::path place = fs::absolute(folder / "").parent_path();  // without a slash at the end
+  return fs::path(place) += ".log";
 }
 
 /// Makes a run, and returns its exit code.
 int made(const Given& run) {
-  fs::path log = run["out"].as<std::string>();
-  log += ".log";
+  const fs::path log = log_of(run["out"].as<std::string>());
   std::error_code error;
-  fs::create_directories(fs::absolute(log).parent_path(), error);
+  fs::create_directories(log.parent_path(), error);
   std::ofstream stream(log, std::ios::app);
   if (!stream) {
     std::cerr << "evodevo: " + printable(log.string()) + ": cannot be written; give the run another --out\n";
@@ -117,11 +124,12 @@ Command run_many_command() {
       .name = "run-many",
       .arguments = {{"FILE"}},
       .summary = "Make many runs in one process",
-      .text = {"The runs share the GPUs, so that small populations keep them busy together. FILE, or standard input if "
-               "it is -, has a line for each run: a JSON array with the arguments of `run`. What a run prints goes to "
-               "the file OUT.log beside its folder OUT. When a run has ended, a JSON object with its number, counted "
-               "from 0, and its exit code is printed. A run that fails does not end the others. SIGINT, SIGTERM and "
-               "SIGUSR1 end all runs after their generations."},
+      .text =
+          {"The runs share the GPUs, so that small populations keep them busy together. FILE has a line for each run: "
+           "a JSON array with the arguments of `run`. What a run prints goes to the file OUT.log beside its folder "
+           "OUT. When a run has ended, a JSON object with its number, counted from 0, and its exit code is printed. "
+           "A run that fails does not end the others. SIGINT, SIGTERM and SIGUSR1 end all runs after their "
+           "generations."},
       .examples = {"run-many runs.jsonl --jobs 16"},
       .options = options,
       .function = run_many};

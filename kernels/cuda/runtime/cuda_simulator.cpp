@@ -151,12 +151,12 @@ class DeviceSimulator final : public CudaSimulator {
   /// Adds the time of the kernels to `seconds`.
   std::size_t simulate_next_portion(std::span<cuda::Plan<T>> plans, const cuda::Run& run, double& seconds) {
     const auto attempt = [&](std::size_t count) {
-      const cuda::BatchResourcePool::Loan streams_of_batch(resources_->batches);
+      const cuda::BatchResourcePool::Loan resources_of_batch(resources_->batches);
+      cuda::Portion<T> portion(plans.first(count), run, resources_->memory);
       // runs that record springs have priority: after them, the host has work to do, while other runs use the device
-      const std::vector<cuda::Stream>& streams =
-          run.recording.of_springs() ? streams_of_batch->urgent : streams_of_batch->patient;
-      seconds += cuda::Portion<T>(plans.first(count), run, resources_->memory)
-                     .simulate(*common_.kernels, streams, workers(), busy_);
+      const bool urgent = run.recording.of_springs();
+      seconds +=
+          portion.simulate(*common_.kernels, resources_of_batch->streams(urgent, portion.launches()), workers(), busy_);
     };
     try {
       return resources_->memory.with_fewer(plans_that_fit(plans), attempt);

@@ -1,10 +1,12 @@
 // What all simulators and searches of this process on a GPU share.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <vector>
 
 #include "cuda/runtime/device.hpp"
@@ -13,14 +15,21 @@
 
 namespace evodevo::cuda {
 
-/// The streams that a single batch uses exclusively.
-struct BatchResources {
-  BatchResources() {
+/// The streams that a single batch uses exclusively. They are opened when they are first needed.
+class BatchResources {
+ public:
+  /// Returns at least one stream, and one for each of `launches` up to a dozen. Launches in `urgent` streams begin
+  /// before those that wait in other streams.
+  std::span<const Stream> streams(bool urgent, std::size_t launches) {
     constexpr std::size_t most = 12;
-    for (std::size_t i = 0; i < most; ++i) urgent.emplace_back(true), patient.emplace_back();
+    const std::size_t count = std::clamp<std::size_t>(launches, 1, most);
+    std::vector<Stream>& open = urgent ? urgent_ : patient_;
+    while (open.size() < count) open.emplace_back(urgent);
+    return std::span(open).first(count);
   }
 
-  std::vector<Stream> urgent, patient;
+ private:
+  std::vector<Stream> urgent_, patient_;
 };
 
 /// The resources of batches that have ended, kept for later batches. New resources are created if none are available.

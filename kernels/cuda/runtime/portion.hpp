@@ -11,6 +11,7 @@
 //   unpack     states, sums and answers on the host ─► tasks
 #pragma once
 
+#include <algorithm>
 #include <deque>
 #include <map>
 #include <span>
@@ -58,6 +59,9 @@ class Portion {
  public:
   /// Throws OutOfMemory. simulate() may throw it as well.
   Portion(std::span<Plan<T>> plans, const Run& run, MemoryStore& store);
+
+  /// The number of launches that can proceed at the same time, each in a stream.
+  std::size_t launches() const { return std::max(resident_.size(), streamed_.size()); }
 
   /// Simulates all steps, fills in the results and returns the time of the kernels, s. `busy` runs while the device
   /// works. If this function throws, no result is filled in and the streams are idle.
