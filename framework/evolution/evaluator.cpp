@@ -55,7 +55,7 @@ void LocalEvaluator::forget_records() {
 }
 
 std::vector<Verification> LocalEvaluator::verify(std::span<const Champion> champions, std::span<const std::uint32_t>) {
-  return verify_marks(experiment_, simulator_, exact(), champions);
+  return verify_marks(experiment_, simulator_, exact(), champions, verified_at_once());
 }
 
 const ExactSimulators& LocalEvaluator::exact() {

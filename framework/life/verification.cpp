@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <stdexcept>
 
 #include "cpu/simulator.hpp"
@@ -32,6 +33,19 @@ Matured matured(const Evaluation& evaluation, std::span<const Champion> champion
 
 void still_muscles(Life& life) {
   for (Material& material : life.living.body.materials) material.amplitude = 0;
+}
+
+/// Returns those of the lives that have these indices.
+Matured only(const Matured& all, std::span<const std::size_t> indices) {
+  Matured some;
+  const auto chosen = [&](const std::vector<Life>& lives) {
+    std::vector<Life> copies;
+    for (const std::size_t i : indices) copies.push_back(lives[i]);
+    return copies;
+  };
+  some.lives = chosen(all.lives);
+  for (const auto& [scenario, lives] : all.in_scenarios) some.in_scenarios[scenario] = chosen(lives);
+  return some;
 }
 
 /// Repeats final evaluations of matured champions, each time with one thing changed. Several threads may use it.
@@ -176,15 +190,35 @@ ExactSimulators exact_simulators(const Experiment& experiment, const Simulator& 
 }
 
 std::vector<Verification> verify_marks(const Experiment& experiment, Simulator& simulator, const ExactSimulators& exact,
-                                       std::span<const Champion> champions) {
+                                       std::span<const Champion> champions, std::size_t most_at_once) {
+  using Part = std::function<std::vector<Trial>(const Repetition&)>;
+  const Part without_muscles = [&](const Repetition& repetition) { return repetition.no_muscles(simulator); };
+  const Part later = [&](const Repetition& repetition) { return repetition.settled(simulator); };
+  const Part in_quarters = [&](const Repetition& repetition) { return repetition.quarter_step(*exact.same_method); };
+  const Part otherwise = [&](const Repetition& repetition) { return repetition.other_step(*exact.other_method); };
+  const bool maximise = experiment.objectives.front().maximise;
   const Evaluation run(experiment, simulator);
-  const Repetition repetition(experiment, matured(run, champions));
-  return verifications(champions, at_once({
-                                      [&] { return repetition.quarter_step(*exact.same_method); },
-                                      [&] { return repetition.other_step(*exact.other_method); },
-                                      [&] { return repetition.no_muscles(simulator); },
-                                      [&] { return repetition.settled(simulator); },
-                                  }));
+  const Matured all = matured(run, champions);
+  std::vector<Verification> found = verifications(champions, {});
+  std::vector<std::size_t> left(champions.size());  // the champions without a mark
+  std::iota(left.begin(), left.end(), std::size_t{0});
+  const auto repeat = [&](const std::vector<Part>& parts) {
+    if (left.empty()) return;
+    const Repetition repetition(experiment, only(all, left));
+    std::vector<Repeat> repeats;
+    for (const Part& part : parts) repeats.push_back([&] { return part(repetition); });
+    for (std::vector<Trial>& trials : at_once(repeats))
+      for (std::size_t i = 0; i < left.size(); ++i) found[left[i]].trials.push_back(std::move(trials[i]));
+    std::erase_if(left, [&](std::size_t i) { return first_mark(found[i], maximise).has_value(); });
+  };
+  repeat({without_muscles, later});  // about a tenth of the work of the others
+  if (left.size() <= most_at_once) {
+    repeat({in_quarters, otherwise});
+  } else {
+    repeat({in_quarters});
+    repeat({otherwise});
+  }
+  return found;
 }
 
 bool held(const Verification& verification, const Trial& trial, bool maximise) {
@@ -195,7 +229,7 @@ bool held(const Verification& verification, const Trial& trial, bool maximise) {
 
 namespace {
 
-/// Returns the marks of an individual, each with the first trial that shows it.
+/// Returns the marks of an individual, each with the first trial that shows it, in the order of verify_marks().
 std::vector<Mark> all_marks(const Verification& verification, bool maximise) {
   std::vector<Mark> marks;
   const auto mark_by = [&](const char* name, Status status, const auto& shows) {
@@ -204,12 +238,13 @@ std::vector<Mark> all_marks(const Verification& verification, bool maximise) {
     if (trial != nullptr && !is_marked && shows(*trial)) marks.push_back({status, *trial});
   };
   const auto is_lost = [&](const Trial& trial) { return !held(verification, trial, maximise); };
+  const double half = enough * verification.fitness;
+  if (maximise && verification.fitness > 0) {
+    mark_by("no-muscles", Status::passive, [&](const Trial& trial) { return trial.value && *trial.value > half; });
+    mark_by("settled", Status::passive, [&](const Trial& trial) { return trial.value && *trial.value < half; });
+  }
   mark_by("quarter-step", Status::artefact, is_lost);
   mark_by("other-method", Status::artefact, is_lost);
-  if (!maximise || !(verification.fitness > 0)) return marks;
-  const double half = enough * verification.fitness;
-  mark_by("no-muscles", Status::passive, [&](const Trial& trial) { return trial.value && *trial.value > half; });
-  mark_by("settled", Status::passive, [&](const Trial& trial) { return trial.value && *trial.value < half; });
   return marks;
 }
 
@@ -218,6 +253,7 @@ std::vector<Mark> all_marks(const Verification& verification, bool maximise) {
 std::vector<std::string> marks(const Verification& verification, bool maximise) {
   std::vector<std::string> names;
   for (const Mark& mark : all_marks(verification, maximise)) names.emplace_back(name(mark.status));
+  std::ranges::sort(names);
   return names;
 }
 

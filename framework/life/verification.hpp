@@ -61,11 +61,13 @@ ExactSimulators exact_simulators(const Experiment& experiment, const Simulator& 
 std::vector<Verification> verify(const Experiment& experiment, Simulator& simulator,
                                  std::span<const Champion> champions);
 
-/// Like verify(), but only with the trials on which marks() depends: quarter-step, other-method, no-muscles and
-/// settled. The first two run on `exact`. They have many short steps; on a CPU, they would take far longer than a GPU
-/// needs for all evaluations of a generation.
+/// Like verify(), but only with the trials on which marks() depends, and no further than to the first mark: no-muscles
+/// and settled, then quarter-step, then other-method. The last two run on `exact`. They have many short steps; on a
+/// CPU, they would take far longer than a GPU needs for all evaluations of a generation. If at most `most_at_once`
+/// champions are left then, both are made at the same time, which is sooner done but more work. That changes no first
+/// mark.
 std::vector<Verification> verify_marks(const Experiment& experiment, Simulator& simulator, const ExactSimulators& exact,
-                                       std::span<const Champion> champions);
+                                       std::span<const Champion> champions, std::size_t most_at_once);
 
 /// Whether an individual keeps its fitness in a trial: the trial's value is as good as the fitness, better, or worse by
 /// at most half of the fitness's absolute value. False if the trial has no value.
@@ -75,13 +77,14 @@ bool held(const Verification& verification, const Trial& trial, bool maximise);
 ///   artefact  its fitness depends on the time step or the method: it is lost in quarter-step or other-method;
 ///   passive   it keeps over half its fitness in no-muscles, or loses over half in settled; only if the objective is
 ///             maximised and the fitness is above 0.
+/// The names are in alphabetical order.
 std::vector<std::string> marks(const Verification& verification, bool maximise);
-/// The first of the marks of an individual, as a status, and the trial from which it was found.
+/// A mark of an individual, as a status, and the trial from which it was found.
 struct Mark {
   Status status = Status::artefact;  ///< artefact or passive
   Trial trial;
 };
-/// Returns the first mark of an individual; nullopt if it has none.
+/// Returns the first mark that an individual gets in the order of the trials in verify_marks(); nullopt if it has none.
 std::optional<Mark> first_mark(const Verification& verification, bool maximise);
 /// Returns the marks as a text, such as "artefact, passive"; "verified" if there are none.
 std::string marks_text(const Verification& verification, bool maximise);

@@ -54,6 +54,11 @@ class Outcomes(unittest.TestCase):
         again = self.measure()
         self.assertEqual(again.stdout, done.stdout)
         self.assertEqual({file: file.stat().st_mtime_ns for file in files}, files)
+        for name in ("slope/plain/seed-101", "bodies/plain/seed-101", "scenarios/plain/seed-101-life-2"):
+            (self.folder / "out" / "outcomes" / "rows" / f"{name}.json").unlink()
+        rest = self.measure()
+        self.assertEqual(rest.returncode, 0, rest.stderr)
+        self.assertEqual(re.findall(r"(?m)^\| `plain` \| (\d) \|", rest.stdout), ["1", "1", "1", "2"])
 
     def cells(self, text):
         """Returns the medians in the lines of both arms."""

@@ -28,11 +28,11 @@ TEST(Verification, FindsTheSameOnBothDevices) {
     for (std::size_t i = 0; i < newborns.size(); ++i) champions.push_back({newborns[i], results[i].objectives.at(0)});
     std::vector<std::string> found;
     for (const Verification& verification :
-         verify_marks(experiment, simulator, exact_simulators(experiment, simulator), champions))
+         verify_marks(experiment, simulator, exact_simulators(experiment, simulator), champions, 0))
       found.push_back(marks_text(verification, true));
     return found;
   };
-  const auto expected = ::testing::ElementsAre("verified", "artefact, passive", "passive", "verified");
+  const auto expected = ::testing::ElementsAre("verified", "artefact", "passive", "verified");
   EXPECT_THAT(marks_on(*make_cpu_simulator(experiment.scene, experiment.stepping, 2)), expected);
   EXPECT_THAT(marks_on(*make_cuda_simulator(experiment.scene, experiment.stepping, 2)), expected);
 }

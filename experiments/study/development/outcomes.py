@@ -9,8 +9,8 @@ evolution goes on when it moves to another scene, how much bodies differ, and wh
 The best robot of each run is born again, LIVES times with other random numbers, in the scenarios of scenarios.txt. The
 last population of each run goes on to evolve on a slope. The bodies of BODIES robots of each last population are
 compared in pairs. Each result is kept in `outcomes/rows`, and what is there is not measured again, so that a run can be
-removed once it has been measured. `--jobs N` makes N measurements at once. Prints medians over the runs with their
-intervals. Needs SciPy.
+removed once it has been measured; one that was removed before is left out. `--jobs N` makes N measurements at once.
+Prints medians over the runs with their intervals. Needs SciPy.
 """
 
 import argparse
@@ -86,8 +86,8 @@ class Program:
         return json.loads(done.stdout)
 
     def make(self, out, runs):
-        """Makes those of the runs that have no row."""
-        waiting = [run for run in runs if not run.row(out).exists()]
+        """Makes those of the runs that have no row, as far as the runs with which they begin are there."""
+        waiting = [run for run in runs if not run.row(out).exists() and run.start.exists()]
         for index, code in run_many(self._path, [run.arguments(out) for run in waiting], self.jobs):
             run = waiting[index]
             if code:
@@ -121,9 +121,13 @@ def lives_in_scenarios(arm, run):
 
 
 def in_scenarios(_, out, arm, run):
-    """Returns the distances of the best robot of a run by scenario, each the mean of several lives."""
+    """Returns the distances of the best robot of a run by scenario, each the mean of several lives; None if they have not
+    been measured and the run is gone. The same holds for the other outcomes."""
+    again = lives_in_scenarios(arm, run)
+    if not all(life.row(out).exists() for life in again):
+        return None
     lives = collections.defaultdict(list)
-    for life in lives_in_scenarios(arm, run):
+    for life in again:
         shown = rows.read(life.row(out))
         for scenario, score in by_scenario(shown["best"], objective_of(shown["objectives"][0])).items():
             lives[scenario].append(score)
@@ -143,7 +147,10 @@ def move_to_the_slope(arm, run):
 
 def on_the_slope(_, out, arm, run):
     """Returns the best distance so far after each of GENERATIONS on the slope."""
-    shown = rows.read(move_to_the_slope(arm, run).row(out))
+    row = move_to_the_slope(arm, run).row(out)
+    if not row.exists():
+        return None
+    shown = rows.read(row)
     past = history(shown, objective_of(shown["objectives"][0]))
     population = population_of(arm, run)
     return {f"after {count * population} evaluations": past.at("generations", count, "best") for count in GENERATIONS}
@@ -181,6 +188,8 @@ def between_bodies(program, out, arm, run):
     their springs at birth and matured."""
     row = out / "rows" / "bodies" / arm.name / f"{run.name}.json"
     if not row.exists():
+        if not run.exists():
+            return None
         ids = living(run)
         chosen = ids[:: max(1, len(ids) // BODIES)][:BODIES]
         newborn, matured = (
@@ -243,7 +252,11 @@ def main():
             return {arm.name: pool.map(functools.partial(measure, program, out, arm), arm.runs) for arm in arms}
 
         begun = [(title, begin(measure)) for title, measure in OUTCOMES]
-        text = "\n".join(report(title, {arm: list(runs) for arm, runs in of_arms.items()}) for title, of_arms in begun)
+        known = [
+            (title, {arm: [run for run in runs if run is not None] for arm, runs in of_arms.items()})
+            for title, of_arms in begun
+        ]
+    text = "\n".join(report(title, of_arms) for title, of_arms in known)
     (out / "report.md").write_text(text)
     print(text)
 

@@ -142,12 +142,14 @@ Topic verification() {
            "is repeated in eight trials.",
            "A trial has held if the first objective is as good as in the run, better, or worse by at most half of its "
            "absolute value. An individual is an artefact if quarter-step or other-method did not hold. It is passive "
-           "if it keeps more than half of its fitness "
-           "without muscles, or has lost more than half of it after ten more seconds. Otherwise it is verified.",
+           "if it keeps more than half of its fitness without muscles, or has lost more than half of it after ten more "
+           "seconds. Otherwise it is verified.",
            "With [experiment] verify_front = true, individuals are also verified before they enter the front of a "
-           "generation, in four of the trials: quarter-step, other-method, no-muscles and settled. Those that are "
-           "artefacts or passive get that status and lose their fitness. All four trials run on the device of the run, "
-           "while quarter-step and other-method at the end of a run always use the CPU."},
+           "generation, in four of the trials: no-muscles and settled, then quarter-step and other-method. The first "
+           "trial that shows an artefact or a passive individual decides its status; it loses its fitness, and is not "
+           "tried further. All four trials run on the device of the run, while quarter-step and other-method at the "
+           "end "
+           "of a run always use the CPU."},
       .definitions = {{"again", "The final evaluation as it was in the run."},
                       {"quarter-step", "A quarter of the time step, in double precision."},
                       {"other-method",
