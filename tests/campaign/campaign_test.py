@@ -7,7 +7,7 @@ import stat
 import tempfile
 import unittest
 
-from campaign.command import campaign
+from campaign.command import campaign, chosen
 from campaign.fuzz import Fuzz
 from campaign.outcomes import Outcome, Record
 from common.command_line import Failure
@@ -69,6 +69,14 @@ class Campaigns(unittest.TestCase):
             campaign(60, self.folder / "out", parts)
         self.assertEqual(told.getvalue().strip(), str(self.folder / "out" / "report.md"))
         return self.page()
+
+    def test_one_part_can_be_chosen(self):
+        counting, other = Counting(1), Counting(1)
+        other.name = "other"
+        self.assertEqual(chosen([counting, other], None), [counting, other])
+        self.assertEqual(chosen([counting, other], "other"), [other])
+        with self.assertRaisesRegex(Failure, "--only soak: .*counting, other"):
+            chosen([counting, other], "soak")
 
     def page(self):
         return (self.folder / "out" / "report.md").read_text()

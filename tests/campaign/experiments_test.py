@@ -114,6 +114,10 @@ class Programs(unittest.TestCase):
     def test_what_cannot_be_shown(self):
         self.assertRegex(self.broken("[ $1 != show ] || exit 7"), "^show: exit code 7")
 
+    def test_results_that_depend_on_other_runs_of_the_process(self):
+        fault = 'case "$1" in run-many) sed -i \'s/"--threads", "2"/&, "--seed", "99"/\' "$2" ;; esac'
+        self.assertRegex(self.broken(fault), "^beside another run: .* differs: ")
+
     def test_results_that_depend_on_threads(self):
         fault = 'case "$*" in *"--threads 3"*) set -- "$@" --seed 99 ;; esac'
         self.assertRegex(self.broken(fault), "^with 3 threads instead of 1: .* differs: ")

@@ -25,6 +25,7 @@ def parse(words):
         help="instead of looking for faults, plant N of them, one at a time, in a copy of the last commit, and ask the "
         "tests; this takes some minutes for each fault",
     )
+    add("--only", metavar="PART", help="look for faults in one of the parts alone, such as fuzz")
     add("--gpu", action="store_true", help="look for faults of the simulation on a GPU instead of all others")
     add("--out", metavar="DIR", type=pathlib.Path, default=pathlib.Path("runs/campaign"), help="folder for results (%(default)s)")
     return parser.parse_args(words)

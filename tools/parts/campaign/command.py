@@ -31,8 +31,18 @@ def sit(given, program):
     if given.planted:
         campaign(0, given.out, [Planted(Workshop(ROOT, given.out / "planted"), given.out, given.planted)])
     else:
-        all_parts = parts_on_gpu if given.gpu else parts
-        campaign(given.minutes * 60, given.out, all_parts(program, given.out))
+        all_parts = (parts_on_gpu if given.gpu else parts)(program, given.out)
+        campaign(given.minutes * 60, given.out, chosen(all_parts, given.only))
+
+
+def chosen(parts, only):
+    """Returns the part with the name `only`, or all if that is None."""
+    if only is None:
+        return parts
+    named = [part for part in parts if part.name == only]
+    if not named:
+        raise Failure(f"--only {only}: there is no such part; give one of {', '.join(part.name for part in parts)}")
+    return named
 
 
 def parts(program, folder):

@@ -47,6 +47,7 @@ class Laws:
         best = self._makes_sense(one)
         require(self._evodevo("run", file, *made(three, 3)), "run --threads 3")
         same_rows(one, three, "with 3 threads instead of 1")
+        self._is_same_beside_another(file, one)
         self.run_in_parts(file, parts)
         same_rows(one, parts, "with an interruption")
         if "3 ranks" not in self.left_out:
@@ -75,6 +76,14 @@ class Laws:
             return False
         require(checked, "check")
         return True
+
+    def _is_same_beside_another(self, file, one):
+        """Makes the run in a process that makes another one at the same time."""
+        beside, lines = self._folder / "beside", self._folder / "runs.jsonl"
+        runs = [file, *made(beside, 2)], [file, *made(self._folder / "another", 1), "--seed", 2]
+        lines.write_text("".join(json.dumps([*map(str, words)]) + "\n" for words in runs))
+        require(self._evodevo("run-many", lines, "--jobs", 2), "run-many")
+        same_rows(one, beside, "beside another run")
 
     def _is_same_with_ranks(self, file, one):
         ranks = self._folder / "ranks"
