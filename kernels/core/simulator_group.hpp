@@ -47,8 +47,8 @@ class Backlog {
 
 /// Makes one simulator of several. Each batch is simulated by one of them, and several batches by several at once.
 /// The members must be at least one, and must give equal results: devices of one type, with the same scene and
-/// stepping, that share their workers. Groups on the same devices should have the same
-/// backlog, with as many members; null: one of its own.
+/// stepping, that share their workers. Groups on the same devices should have the same backlog, with as many members;
+/// null: one of its own.
 std::unique_ptr<Simulator> make_simulator_group(std::vector<std::unique_ptr<Simulator>> members,
                                                 std::shared_ptr<Backlog> backlog = nullptr);
 
