@@ -3,18 +3,14 @@
 #include <algorithm>
 #include <utility>
 
-#include "threads/parallel.hpp"
-
 namespace evodevo {
 
 std::size_t lives_at_once(Simulator& simulator) {
   constexpr std::size_t of_a_gpu = 100;
-  const std::size_t threads = simulator.workers().count();
   const std::optional<DeviceUse> gpus = simulator.device_use();
-  if (!gpus) return threads;
-  // runs that share the GPUs share the cores as well
-  const auto cores = static_cast<std::size_t>(thread_count(0));
-  return std::max<std::size_t>(1, of_a_gpu * gpus->devices * std::min(threads, cores) / cores);
+  if (!gpus) return simulator.workers().count();
+  const std::size_t most = of_a_gpu * gpus->devices;
+  return most - std::min(most - 1, gpus->bodies);
 }
 
 std::size_t verified_at_once(Simulator& simulator) { return std::max<std::size_t>(1, lives_at_once(simulator) / 2); }

@@ -53,8 +53,8 @@ class Evaluator {
   virtual PhaseTimes phase_times() const = 0;
 };
 
-/// About the number of lives that keep a simulator busy: one for each thread of a CPU, a hundred for a GPU, or a part of
-/// them if the simulator has a part of the cores.
+/// About the number of lives that keep a simulator busy: one for each thread of a CPU, a hundred for a GPU, less
+/// those that it simulates already, such as those of other runs of this process.
 std::size_t lives_at_once(Simulator& simulator);
 /// About the number of champions that one process verifies in the time that one takes. Two of the four trials take
 /// nearly all of the time.

@@ -131,6 +131,7 @@ struct DeviceUse {
   std::size_t devices = 1;
   double busy = 0;           ///< time during which a device was working, s; the sum over all devices
   std::size_t portions = 1;  ///< largest number of portions into which a batch was divided to fit the device's memory
+  std::size_t bodies = 0;    ///< that all simulators of this process are simulating on the devices at the moment
 };
 
 /// Simulates bodies in a scene; tasks may have scenes of their own. Masses of 0 kg are held in place. The result for a

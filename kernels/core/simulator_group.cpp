@@ -68,6 +68,7 @@ class SimulatorGroup final : public Simulator {
       whole->devices += use->devices;
       whole->busy += use->busy;
       whole->portions = std::max(whole->portions, use->portions);
+      whole->bodies += use->bodies;
     }
     return whole;
   }

@@ -114,6 +114,31 @@ TEST_F(Pairs, WhoComesFromAnotherDeviceIsNotVerified) {
   EXPECT_EQ(verification_.refuse(everyone_, 1).size(), 1u) << "older individuals are verified, too";
 }
 
+/// A device on which so many bodies are simulated.
+class BusyDevice final : public Simulator {
+ public:
+  explicit BusyDevice(std::size_t bodies) : bodies_(bodies) {}
+  void run(std::span<Task>, Recording) override {}
+  NeighbourSearch& neighbours() override { throw std::logic_error("not used"); }
+  Workers& workers() override { return workers_; }
+  std::optional<DeviceUse> device_use() const override { return DeviceUse{.devices = 2, .bodies = bodies_}; }
+  std::string device() const override { return "device"; }
+
+ private:
+  std::size_t bodies_;
+  Workers workers_{1};
+};
+
+TEST(LivesAtOnce, AreThoseThatADeviceStillHasRoomFor) {
+  for (const auto& [bodies, lives] : {std::pair<std::size_t, std::size_t>{0, 200}, {150, 50}, {199, 1}, {5000, 1}}) {
+    BusyDevice device(bodies);
+    EXPECT_EQ(lives_at_once(device), lives);
+    EXPECT_EQ(verified_at_once(device), std::max<std::size_t>(1, lives / 2));
+  }
+  const auto cpu = make_cpu_simulator({}, {}, 3);
+  EXPECT_EQ(lives_at_once(*cpu), 3u);
+}
+
 class VerifiedRun : public ::testing::Test {
  protected:
   /// Returns the archive of a run that verifies its front.

@@ -7,6 +7,7 @@
 #include <condition_variable>
 #include <functional>
 #include <mutex>
+#include <numeric>
 #include <optional>
 
 namespace evodevo {
@@ -37,7 +38,10 @@ class Noting final : public Simulator {
   NeighbourSearch& neighbours() override { throw std::logic_error("not used"); }
   Workers& workers() override { return workers_; }
   int concurrency() const override { return 3; }
-  std::optional<DeviceUse> device_use() const override { return DeviceUse{.busy = 2, .portions = notes_.size()}; }
+  std::optional<DeviceUse> device_use() const override {
+    return DeviceUse{
+        .busy = 2, .portions = notes_.size(), .bodies = std::accumulate(notes_.begin(), notes_.end(), std::size_t{0})};
+  }
   std::string device() const override { return "device"; }
 
  private:
@@ -79,6 +83,7 @@ TEST(SimulatorGroup, SimulatesBatchesAtTheSameTime) {
   EXPECT_EQ(use.devices, 2u);
   EXPECT_EQ(use.busy, 4);
   EXPECT_EQ(use.portions, 1u);
+  EXPECT_EQ(use.bodies, 3u);
 }
 
 }  // namespace

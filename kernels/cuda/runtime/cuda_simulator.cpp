@@ -89,7 +89,7 @@ class DeviceSimulator final : public CudaSimulator {
 
   std::optional<DeviceUse> device_use() const override {
     const std::lock_guard lock(mutex_);
-    return DeviceUse{.busy = busy_.seconds(), .portions = most_portions_};
+    return DeviceUse{.busy = busy_.seconds(), .portions = most_portions_, .bodies = resources_->present.number()};
   }
 
   double device_seconds() const override {
