@@ -52,7 +52,7 @@ class Outcomes(unittest.TestCase):
         self.assertEqual(len(files), 2 * 2 * (3 + 1 + 1))  # arms, runs; lives in the scenarios, the slope, bodies
         shutil.rmtree(self.folder / "out" / "runs")
         again = self.measure()
-        self.assertEqual(again.stdout, done.stdout)
+        self.assertEqual((again.stdout, again.stderr), (done.stdout, ""))
         self.assertEqual({file: file.stat().st_mtime_ns for file in files}, files)
         for name in ("slope/plain/seed-101", "bodies/plain/seed-101", "scenarios/plain/seed-101-life-2"):
             (self.folder / "out" / "outcomes" / "rows" / f"{name}.json").unlink()

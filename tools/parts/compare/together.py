@@ -13,6 +13,8 @@ def run_many(program, runs, jobs):
     """Makes runs in one process, `jobs` at a time, so that they share its GPUs. Each element of `runs` has the arguments of
     one `evodevo run`, with --out; what the run prints goes to that name with .log. Yields for each run, when it has
     ended, its index in `runs` and its exit code; for runs that the process has not ended, the exit code of the process."""
+    if not runs:
+        return
     left = set(range(len(runs)))
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder, "runs.jsonl")
