@@ -7,6 +7,7 @@ import stat
 import tempfile
 import unittest
 
+from campaign import arguments
 from campaign.command import campaign, chosen
 from campaign.fuzz import Fuzz
 from campaign.outcomes import Outcome, Record
@@ -77,6 +78,12 @@ class Campaigns(unittest.TestCase):
         self.assertEqual(chosen([counting, other], "other"), [other])
         with self.assertRaisesRegex(Failure, "--only soak: .*counting, other"):
             chosen([counting, other], "soak")
+
+    def test_planted_faults_have_no_parts(self):
+        for option in (["--only", "fuzz"], ["--gpu"]):
+            with contextlib.redirect_stderr(io.StringIO()) as told, self.assertRaises(SystemExit):
+                arguments.parse(["--planted", "3", *option])
+            self.assertRegex(told.getvalue(), "--planted: .*--only.*--gpu")
 
     def page(self):
         return (self.folder / "out" / "report.md").read_text()

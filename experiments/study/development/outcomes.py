@@ -49,7 +49,7 @@ BODIES = 10  # of each population
 
 
 @dataclasses.dataclass(frozen=True)
-class Further:
+class Continuation:
     """A run that begins with the population of another one."""
 
     name: str
@@ -88,11 +88,13 @@ class Program:
     def make(self, out, runs):
         """Makes those of the runs that have no row, as far as the runs with which they begin are there."""
         waiting = [run for run in runs if not run.row(out).exists() and run.start.exists()]
-        for index, code in run_many(self._path, [run.arguments(out) for run in waiting], self.jobs):
-            run = waiting[index]
-            if code:
-                sys.exit(f"{run.folder(out)}: the run ended with {code}; see {run.folder(out)}.log")
-            rows.write(run.row(out), self.json("show", run.folder(out), "--json"))
+        arguments = [run.arguments(out) for run in waiting]
+        with contextlib.closing(run_many(self._path, arguments, self.jobs)) as ended:
+            for index, code in ended:
+                run = waiting[index]
+                if code:
+                    sys.exit(f"{run.folder(out)}: the run ended with {code}; see {run.folder(out)}.log")
+                rows.write(run.row(out), self.json("show", run.folder(out), "--json"))
 
 
 class Arm:
@@ -117,7 +119,7 @@ def lives_in_scenarios(arm, run):
     experiment = f"{arm.experiment}\n{(HERE / 'scenarios.txt').read_text()}"
     settings = arm.settings(*(f"experiment.{setting}" for setting in ALONE))
     names = {life: f"scenarios/{arm.name}/{run.name}-life-{life}" for life in range(1, LIVES + 1)}
-    return [Further(name, experiment, settings, run, life) for life, name in names.items()]
+    return [Continuation(name, experiment, settings, run, life) for life, name in names.items()]
 
 
 def in_scenarios(_, out, arm, run):
@@ -142,7 +144,7 @@ def move_to_the_slope(arm, run):
     """Returns the run in which the last population of a run goes on to evolve on a slope."""
     evaluations = f"experiment.evaluations={GENERATIONS[-1] * population_of(arm, run)}"
     settings = arm.settings(MOVE, evaluations, "experiment.verify=0")
-    return Further(f"slope/{arm.name}/{run.name}", arm.experiment, settings, run, int(run.name.split("-")[1]))
+    return Continuation(f"slope/{arm.name}/{run.name}", arm.experiment, settings, run, int(run.name.split("-")[1]))
 
 
 def on_the_slope(_, out, arm, run):

@@ -103,16 +103,16 @@ int run_many(const Given& given) {
   usable_gpus();  // prepares the environment for the driver before there are other threads
   std::atomic<std::size_t> next = 0;
   std::mutex mutex;
-  int worst = 0;
+  bool has_failed = false;
   on_own_threads(std::min(jobs, runs.size()), [&](std::size_t) {
     for (std::size_t i = next++; i < runs.size() && !stop_requested(); i = next++) {
       const int code = made(runs[i]);
       const std::lock_guard lock(mutex);
       std::cout << nlohmann::ordered_json{{"run", i}, {"exit_code", code}}.dump() << std::endl;
-      worst = std::max(worst, code == 0 ? 0 : 1);
+      has_failed |= code != 0;
     }
   });
-  return stop_requested() ? ended_early : worst;
+  return stop_requested() ? ended_early : has_failed ? 1 : 0;
 }
 
 }  // namespace

@@ -28,4 +28,7 @@ def parse(words):
     add("--only", metavar="PART", help="look for faults in one of the parts alone, such as fuzz")
     add("--gpu", action="store_true", help="look for faults of the simulation on a GPU instead of all others")
     add("--out", metavar="DIR", type=pathlib.Path, default=pathlib.Path("runs/campaign"), help="folder for results (%(default)s)")
-    return parser.parse_args(words)
+    given = parser.parse_args(words)
+    if given.planted and (given.only or given.gpu):
+        parser.error("--planted: plants faults in place of all parts; leave out --only and --gpu")
+    return given

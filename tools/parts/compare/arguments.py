@@ -59,8 +59,8 @@ def parse(words):
         "--launcher",
         choices=("local", "mpi", "slurm"),
         default="local",
-        help="local: on this host, several runs in one process; mpi: each run has several ranks, started by srun in a job of Slurm and by "
-        "mpirun elsewhere; slurm: one job array, whose tasks are the runs (%(default)s)",
+        help="local: on this host, several runs in one process; mpi: each run has several ranks, started by srun in a job "
+        "of Slurm and by mpirun elsewhere; slurm: one job array, whose tasks are the runs (%(default)s)",
     )
     add("--ranks", metavar="N", type=positive, help="with mpi: ranks of each run (the tasks of a job / --jobs)")
     add(

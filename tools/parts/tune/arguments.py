@@ -34,8 +34,8 @@ def parse(words):
         "--launcher",
         choices=("local", "mpi"),
         default="local",
-        help="local: on this host, several runs in one process; mpi: each run has several ranks, started by srun in a job of Slurm and by "
-        "mpirun elsewhere (%(default)s)",
+        help="local: on this host, several runs in one process; mpi: each run has several ranks, started by srun in a job "
+        "of Slurm and by mpirun elsewhere (%(default)s)",
     )
     add("--ranks", metavar="N", type=positive, help="with mpi: ranks of each run (the tasks of a job / --jobs)")
     add("--out", metavar="DIR", type=pathlib.Path, help="folder for results (runs/tune-EXPERIMENT)")
