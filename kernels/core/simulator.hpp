@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -48,6 +49,7 @@ struct Recording {
   bool tension = false;      ///< SpringRecords::tension
 
   bool of_springs() const { return stress || peak_force || muscle_work || tension; }
+  auto operator<=>(const Recording&) const = default;
 };
 
 /// The recorded quantities of a body's springs, with one number for each spring. Lists that were not requested are
@@ -129,7 +131,8 @@ class DeviceOutOfMemory : public std::runtime_error {
 /// The use of one or several devices such as GPUs since their simulator was created.
 struct DeviceUse {
   std::size_t devices = 1;
-  double busy = 0;           ///< time during which a device was working, s; the sum over all devices
+  /// Time during which a device was working, for any simulator of this process, s; the sum over all devices.
+  double busy = 0;
   std::size_t portions = 1;  ///< largest number of portions into which a batch was divided to fit the device's memory
   std::size_t bodies = 0;    ///< that all simulators of this process are simulating on the devices at the moment
 };

@@ -1,6 +1,7 @@
 // The simulator on a GPU.
 //
-//   tasks ─► begin: courses ─► plan: layout of each body ─► portions that fit ─► Portion::simulate ─► answers
+//   tasks ─► begin: courses ─► plan: layout of each body ─► Coalescer: a batch, which may have plans of other callers too
+//   ─► portions that fit ─► Portion::simulate ─► answers
 #include "cuda/runtime/cuda_simulator.hpp"
 
 #include <algorithm>
@@ -65,14 +66,8 @@ class DeviceSimulator final : public CudaSimulator {
         cuda::spans_per_range(live),
         largest_cluster(),
         clusters_.blocks_for(std::max(resources_->announced.number(), resources_->present.number()), *common_.kernels)};
-    std::vector<cuda::Plan<T>> plans = plan(live, run);
-    double seconds = 0;
-    std::size_t portions = 0;
-    for (std::span<cuda::Plan<T>> left = plans; !left.empty(); ++portions)
-      left = left.subspan(simulate_next_portion(left, run, seconds));
-    const std::lock_guard lock(mutex_);
-    device_seconds_ = seconds;
-    most_portions_ = std::max(most_portions_, portions);
+    std::get<cuda::DeviceResources::Batches<T>>(resources_->coalescers)
+        .run(cuda::Kind(run), plan(live, run), [&](std::span<cuda::Plan<T>> batch) { simulate(batch, run); });
   }
 
   NeighbourSearch& neighbours() override { return *neighbours_; }
@@ -89,7 +84,9 @@ class DeviceSimulator final : public CudaSimulator {
 
   std::optional<DeviceUse> device_use() const override {
     const std::lock_guard lock(mutex_);
-    return DeviceUse{.busy = busy_.seconds(), .portions = most_portions_, .bodies = resources_->present.number()};
+    return DeviceUse{.busy = resources_->busy.seconds() - busy_before_,
+                     .portions = most_portions_,
+                     .bodies = resources_->present.number()};
   }
 
   double device_seconds() const override {
@@ -147,6 +144,16 @@ class DeviceSimulator final : public CudaSimulator {
     return plans;
   }
 
+  void simulate(std::span<cuda::Plan<T>> plans, const cuda::Run& run) {
+    double seconds = 0;
+    std::size_t portions = 0;
+    for (std::span<cuda::Plan<T>> left = plans; !left.empty(); ++portions)
+      left = left.subspan(simulate_next_portion(left, run, seconds));
+    const std::lock_guard lock(mutex_);
+    device_seconds_ = seconds;
+    most_portions_ = std::max(most_portions_, portions);
+  }
+
   /// Simulates as many plans, from the first one on, as fit in the device's memory together, and returns their number.
   /// Adds the time of the kernels to `seconds`.
   std::size_t simulate_next_portion(std::span<cuda::Plan<T>> plans, const cuda::Run& run, double& seconds) {
@@ -155,8 +162,8 @@ class DeviceSimulator final : public CudaSimulator {
       cuda::Portion<T> portion(plans.first(count), run, resources_->memory);
       // runs that record springs have priority: after them, the host has work to do, while other runs use the device
       const bool urgent = run.recording.of_springs();
-      seconds +=
-          portion.simulate(*common_.kernels, resources_of_batch->streams(urgent, portion.launches()), workers(), busy_);
+      const std::span<const cuda::Stream> streams = resources_of_batch->streams(urgent, portion.launches());
+      seconds += portion.simulate(*common_.kernels, streams, workers(), resources_->busy);
     };
     try {
       return resources_->memory.with_fewer(plans_that_fit(plans), attempt);
@@ -193,7 +200,7 @@ class DeviceSimulator final : public CudaSimulator {
   cuda::Clusters clusters_;
   std::shared_ptr<cuda::DeviceResources> resources_ = cuda::DeviceResources::of(device_);
   std::unique_ptr<NeighbourSearch> neighbours_;
-  BusyClock busy_;
+  const double busy_before_ = resources_->busy.seconds();  // this simulator was created
   mutable std::mutex mutex_;
   double device_seconds_ = 0;
   std::size_t most_portions_ = 1;

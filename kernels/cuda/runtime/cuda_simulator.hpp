@@ -15,7 +15,8 @@ namespace evodevo {
 /// A simulator on a GPU, with additional information that only it has.
 class CudaSimulator : public Simulator {
  public:
-  /// The time (s) that the device needed for the steps of the last run() that has ended, without copies.
+  /// The time (s) that the device needed for the steps of the last batch that this simulator has sent to it, without
+  /// copies. A run() is a batch of its own unless many others are under way.
   virtual double device_seconds() const = 0;
 };
 

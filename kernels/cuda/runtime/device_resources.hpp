@@ -7,11 +7,15 @@
 #include <memory>
 #include <mutex>
 #include <span>
+#include <tuple>
 #include <vector>
 
+#include "cuda/runtime/coalescer.hpp"
 #include "cuda/runtime/device.hpp"
 #include "cuda/runtime/memory.hpp"
 #include "cuda/runtime/memory_store.hpp"
+#include "cuda/runtime/portion.hpp"
+#include "threads/busy_clock.hpp"
 
 namespace evodevo::cuda {
 
@@ -23,9 +27,9 @@ class BatchResources {
   std::span<const Stream> streams(bool urgent, std::size_t launches) {
     constexpr std::size_t most = 12;
     const std::size_t count = std::clamp<std::size_t>(launches, 1, most);
-    std::vector<Stream>& open = urgent ? urgent_ : patient_;
-    while (open.size() < count) open.emplace_back(urgent);
-    return std::span(open).first(count);
+    std::vector<Stream>& streams = urgent ? urgent_ : patient_;
+    while (streams.size() < count) streams.emplace_back(urgent);
+    return std::span(streams).first(count);
   }
 
  private:
@@ -82,12 +86,21 @@ class Count {
 
 /// The memory, the streams and the load of a GPU. Several threads may use it; they must work on this GPU.
 struct DeviceResources {
+  template <class T>
+  using Batches = Coalescer<Kind, Plan<T>>;
+
   /// Those of a GPU, which exist as long as somebody holds them.
   static std::shared_ptr<DeviceResources> of(const Device& device);
 
   MemoryStore memory;
   BatchResourcePool batches;
-  Count present, announced;  ///< bodies: in all batches under way, and of whoever has announced them
+  BusyClock busy;            ///< runs while kernels or copies of a batch are under way
+  Count present, announced;  ///< bodies: in all runs under way, and of whoever has announced them
+  std::tuple<Batches<float>, Batches<double>> coalescers{most_batches, most_batches};
+
+ private:
+  /// Of one kind that are under way at the same time.
+  static constexpr std::size_t most_batches = 8;
 };
 
 }  // namespace evodevo::cuda

@@ -41,9 +41,9 @@ double wait_for(const std::deque<Event>& ends, const Event& begin) {
 
 template <class T>
 Plan<T>::Plan(Task& task_, const Run& run)
-    : task(&task_), body([&]() -> decltype(body) {
-        const Features features = features_of(scene_of(task_, run.scene), run.stepping, run.recording,
-                                              material_features(*task_.body), channels_on_device(task_));
+    : task(&task_), scene(&scene_of(task_, run.scene)), body([&]() -> decltype(body) {
+        const Features features = features_of(*scene, run.stepping, run.recording, material_features(*task_.body),
+                                              channels_on_device(task_));
         if (is_explicit(run.stepping.method))
           if (auto resident = Resident<T>::arrange(task_, features,
                                                    {run.device.shared_bytes, run.largest_cluster, run.wanted_blocks},
@@ -117,11 +117,11 @@ void Portion<T>::pack(Workers& workers) {
     for (const std::size_t i : members) streamed.emplace_back(i, to_streamed++);
   workers.for_each(resident.size(), [&](std::size_t k) {
     const auto& [i, to] = resident[k];
-    std::get<Resident<T>>(plans_[i].body).pack(host_[i], device_[i], scene_of(*plans_[i].task, run_.scene), to);
+    std::get<Resident<T>>(plans_[i].body).pack(host_[i], device_[i], *plans_[i].scene, to);
   });
   workers.for_each(streamed.size(), [&](std::size_t k) {
     const auto& [i, to] = streamed[k];
-    *to = std::get<Streamed<T>>(plans_[i].body).pack(host_[i], device_[i], scene_of(*plans_[i].task, run_.scene));
+    *to = std::get<Streamed<T>>(plans_[i].body).pack(host_[i], device_[i], *plans_[i].scene);
   });
 }
 

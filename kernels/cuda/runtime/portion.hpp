@@ -39,7 +39,18 @@ struct Run {
   unsigned largest_cluster, wanted_blocks;  ///< as in Room
 };
 
-/// A task, whose course has begun, and the layout in which its body is simulated.
+/// What bodies of different runs must have in common to be simulated together.
+struct Kind {
+  explicit Kind(const Run& run)
+      : method(run.stepping.method), recording(run.recording), spans_per_range(run.spans_per_range) {}
+  auto operator<=>(const Kind&) const = default;
+
+  Method method;
+  Recording recording;
+  std::uint64_t spans_per_range;
+};
+
+/// A task, whose course has begun, and the layout in which its body is simulated. The scene of the run must outlive it.
 template <class T>
 struct Plan {
   Plan(Task& task, const Run& run);
@@ -50,6 +61,7 @@ struct Plan {
   std::uint64_t ranges() const;
 
   Task* task;
+  const Scene* scene;
   std::variant<Streamed<T>, Resident<T>> body;
 };
 
@@ -57,7 +69,8 @@ struct Plan {
 template <class T>
 class Portion {
  public:
-  /// Throws OutOfMemory. simulate() may throw it as well.
+  /// The plans may be those of several runs of the same kind on the same device, of which `run` is any one. Throws
+  /// OutOfMemory. simulate() may throw it as well.
   Portion(std::span<Plan<T>> plans, const Run& run, MemoryStore& store);
 
   /// The number of launches that can proceed at the same time, each in a stream.
