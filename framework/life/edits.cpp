@@ -95,7 +95,6 @@ class Editor {
         body_(body),
         living_(living),
         old_materials_(body.materials.size()),
-        materials_(body.materials),
         spring_gone_(marked(edits.removed_springs, body.springs.size(), "spring")),
         mass_gone_(marked(edits.removed_masses, body.masses.size(), "mass")) {}
 
@@ -107,11 +106,24 @@ class Editor {
     move_masses();
     move_springs();
     for (const NewSpring& spring : edits_.new_springs) add_spring(spring);
-    drop_unused_materials(body_);
+    if (other_materials_are_used()) drop_unused_materials(body_);
   }
 
  private:
   std::size_t old_masses() const { return mass_gone_.size(); }
+
+  /// Whether springs or masses may use other materials than before. Growth alone, which happens after every cycle in
+  /// some lives, changes none.
+  bool other_materials_are_used() const {
+    return !(edits_.removed_springs.empty() && edits_.removed_masses.empty() && edits_.changed_springs.empty() &&
+             edits_.new_masses.empty() && edits_.new_springs.empty());
+  }
+
+  /// The index of a material among those of the body, to which it is added if it is not there.
+  std::uint32_t index_of(const Material& material) {
+    if (!materials_) materials_.emplace(body_.materials);
+    return materials_->index(material);
+  }
 
   bool goes(const Spring& spring) const { return mass_gone_[spring.a] || mass_gone_[spring.b]; }
 
@@ -193,7 +205,7 @@ class Editor {
       if (change.rest_length) check_rest_length(what, *change.rest_length);
       spring.rest_length = change.rest_length.value_or(spring.rest_length);
       spring.stiffness_factor = change.stiffness_factor.value_or(spring.stiffness_factor);
-      if (change.material) spring.material = materials_.index(*change.material);
+      if (change.material) spring.material = index_of(*change.material);
       check_stiffness(what, body.materials[spring.material], spring.stiffness_factor);
     }
   }
@@ -354,14 +366,14 @@ class Editor {
 
   void add_spring(const NewSpring& spring) {
     body_.springs.push_back({new_index_[spring.a], new_index_[spring.b], *spring.rest_length,
-                             materials_.index(spring.material), 1, *spring.rest_length, spring.stiffness_factor});
+                             index_of(spring.material), 1, *spring.rest_length, spring.stiffness_factor});
   }
 
   const Edits& edits_;
   Body& body_;
   LivingBody* living_;
   std::size_t old_materials_;  ///< number of materials before the edits
-  MaterialList materials_;
+  std::optional<MaterialList> materials_;  ///< of the body, once it is needed, because hashing many takes long
   std::vector<std::uint8_t> spring_gone_, mass_gone_;
   std::vector<std::uint32_t> new_index_;  ///< new index of every old and new mass
 };
