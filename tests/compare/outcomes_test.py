@@ -33,11 +33,14 @@ class Outcomes(unittest.TestCase):
         self.assertEqual(self.compare().returncode, 0)
         done = self.measure("--jobs", "3")
         self.assertEqual(done.returncode, 0, done.stderr)
-        scenes, slope, bodies, line = re.split(r"(?m)^## .*\n", done.stdout)[1:]
+        reborn, scenes, slope, bodies, line = re.split(r"(?m)^## .*\n", done.stdout)[1:]
         scenarios = re.findall(r'(?m)^name = "(.*)"', (SCRIPT.parent / "scenarios.txt").read_text())
         self.assertGreater(len(scenarios), 5)
         self.assertIn(f"|  | runs | {' | '.join(scenarios)} |", scenes)
         self.assertIn("after 5 evaluations | after 10 evaluations | after 20 evaluations", slope)
+        ((in_run, life, kept), _) = self.cells(reborn)  # nothing is drawn at random without development
+        self.assertAlmostEqual(life, in_run)
+        self.assertEqual(kept, 100)
         for text in (scenes, slope):
             plain, developing = self.cells(text)
             self.assertNotEqual(plain, developing)
@@ -58,7 +61,7 @@ class Outcomes(unittest.TestCase):
             (self.folder / "out" / "outcomes" / "rows" / f"{name}.json").unlink()
         rest = self.measure()
         self.assertEqual(rest.returncode, 0, rest.stderr)
-        self.assertEqual(re.findall(r"(?m)^\| `plain` \| (\d) \|", rest.stdout), ["1", "1", "1", "2"])
+        self.assertEqual(re.findall(r"(?m)^\| `plain` \| (\d) \|", rest.stdout), ["1", "1", "1", "1", "2"])
 
     def cells(self, text):
         """Returns the medians in the lines of both arms."""

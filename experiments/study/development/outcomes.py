@@ -42,7 +42,8 @@ from compare.standings import median_with_interval, table  # noqa: E402
 from compare.together import run_many  # noqa: E402
 
 LIVES = 3
-ALONE = ("population=1", "random_individuals=0", "evaluations=1", "verify=0")
+ENOUGH = 0.5  # of the distance in the run
+ALONE = ("population=1", "random_individuals=0", "evaluations=1", "verify=0", "verify_front=false")
 MOVE = "scene.gravity.slope=-10"  # degrees, uphill
 GENERATIONS = (1, 2, 4)  # after which the distance on the slope is told
 BODIES = 10  # of each population
@@ -122,18 +123,38 @@ def lives_in_scenarios(arm, run):
     return [Continuation(name, experiment, settings, run, life) for life, name in names.items()]
 
 
-def in_scenarios(_, out, arm, run):
-    """Returns the distances of the best robot of a run by scenario, each the mean of several lives; None if they have not
-    been measured and the run is gone. The same holds for the other outcomes."""
+def distances_of_lives(out, arm, run):
+    """Returns for each further life of the best robot of a run its distances by scenario, without those in which it has
+    none; None if they have not been measured."""
     again = lives_in_scenarios(arm, run)
     if not all(life.row(out).exists() for life in again):
         return None
-    lives = collections.defaultdict(list)
-    for life in again:
-        shown = rows.read(life.row(out))
-        for scenario, score in by_scenario(shown["best"], objective_of(shown["objectives"][0])).items():
-            lives[scenario].append(score)
-    return {scenario: statistics.fmean(scores) for scenario, scores in lives.items()}
+    lives = [rows.read(life.row(out)) for life in again]
+    return [by_scenario(shown["best"], objective_of(shown["objectives"][0])) for shown in lives]
+
+
+def born_again(_, out, arm, run):
+    """Returns how far the best robot of a run gets at home in other lives, in which development draws other random
+    numbers; None if that has not been measured and the run is gone. The same holds for the other outcomes."""
+    lives = distances_of_lives(out, arm, run)
+    if lives is None:
+        return None
+    shown = rows.read(arm.row(run))
+    distance = shown["best"]["objectives"][shown["objectives"][0]["name"]]
+    again = [life.get("home", -math.inf) for life in lives]
+    kept = sum(each >= ENOUGH * distance for each in again)
+    return {"in the run": distance, "median life": statistics.median(again), "lives that kept half, %": 100 * kept / len(again)}
+
+
+def in_scenarios(_, out, arm, run):
+    """Returns the distances of the best robot of a run by scenario, each the mean of several lives."""
+    lives = distances_of_lives(out, arm, run)
+    if lives is None:
+        return None
+    scores = collections.defaultdict(list)
+    for scenario, score in itertools.chain.from_iterable(life.items() for life in lives):
+        scores[scenario].append(score)
+    return {scenario: statistics.fmean(of_lives) for scenario, of_lives in scores.items()}
 
 
 def population_of(arm, run):
@@ -227,6 +248,7 @@ def report(title, of_arms):
 
 
 OUTCOMES = (
+    ("Distance of the best robot when it is born again", born_again),
     ("Distance in other scenes", in_scenarios),
     ("Distance on a slope to which evolution moved", on_the_slope),
     ("Distance between the bodies of a population", between_bodies),
