@@ -78,6 +78,10 @@ std::vector<Life> Birth::of(std::span<const Newborn> newborns, const Scenario* s
     }
     lives[i].newborn = newborns[i];
     if (scenario != nullptr) lives[i].newborn.record.reset();
+    if (const auto start = simulation_.conditions().perturbed_birth; start && lives[i].alive()) {
+      perturb(lives[i], experiment_, *start);
+      simulation_.choose_step(lives[i]);
+    }
   });
   return lives;
 }

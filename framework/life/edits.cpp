@@ -106,23 +106,21 @@ class Editor {
     move_masses();
     move_springs();
     for (const NewSpring& spring : edits_.new_springs) add_spring(spring);
-    if (other_materials_are_used()) drop_unused_materials(body_);
+    if (!only_grows()) drop_unused_materials(body_);
   }
 
  private:
   std::size_t old_masses() const { return mass_gone_.size(); }
 
-  /// Whether springs or masses may use other materials than before. Growth alone, which happens after every cycle in
-  /// some lives, changes none.
-  bool other_materials_are_used() const {
-    return !(edits_.removed_springs.empty() && edits_.removed_masses.empty() && edits_.changed_springs.empty() &&
-             edits_.new_masses.empty() && edits_.new_springs.empty());
+  /// Whether nothing changes but lengths, as after every cycle in some lives.
+  bool only_grows() const {
+    return edits_.removed_springs.empty() && edits_.removed_masses.empty() && edits_.changed_springs.empty() &&
+           edits_.new_masses.empty() && edits_.new_springs.empty();
   }
 
   /// The index of a material among those of the body, to which it is added if it is not there.
   std::uint32_t index_of(const Material& material) {
-    if (!materials_) materials_.emplace(body_.materials);
-    return materials_->index(material);
+    return (materials_ ? *materials_ : materials_.emplace(body_.materials)).index(material);
   }
 
   bool goes(const Spring& spring) const { return mass_gone_[spring.a] || mass_gone_[spring.b]; }
@@ -192,13 +190,12 @@ class Editor {
 
   void change_springs() {
     if (edits_.changed_springs.empty()) return;
-    Body& body = body_;
-    std::vector<std::uint8_t> changed(body.springs.size(), 0);
+    std::vector<std::uint8_t> changed(body_.springs.size(), 0);
     for (const ChangedSpring& change : edits_.changed_springs) {
       const auto what = [&] { return "replaces spring " + std::to_string(change.spring); };
-      if (change.spring >= body.springs.size())
-        refuse(what() + ", but the body has only " + std::to_string(body.springs.size()) + ", numbered from 0");
-      Spring& spring = body.springs[change.spring];
+      if (change.spring >= body_.springs.size())
+        refuse(what() + ", but the body has only " + std::to_string(body_.springs.size()) + ", numbered from 0");
+      Spring& spring = body_.springs[change.spring];
       if (spring_gone_[change.spring] || goes(spring)) refuse(what() + ", which the same edits remove");
       if (std::exchange(changed[change.spring], 1)) refuse(what() + " twice");
       if (change.material) check_material(what, *change.material);
@@ -206,7 +203,7 @@ class Editor {
       spring.rest_length = change.rest_length.value_or(spring.rest_length);
       spring.stiffness_factor = change.stiffness_factor.value_or(spring.stiffness_factor);
       if (change.material) spring.material = index_of(*change.material);
-      check_stiffness(what, body.materials[spring.material], spring.stiffness_factor);
+      check_stiffness(what, body_.materials[spring.material], spring.stiffness_factor);
     }
   }
 
@@ -250,10 +247,8 @@ class Editor {
         continue;
       }
       staying.push_back(static_cast<std::uint32_t>(i));
-      if (living_ != nullptr)
-        add(body_.masses[i], living_->state.position[i], living_->state.velocity[i]);
-      else
-        add(body_.masses[i], {}, {});
+      add(body_.masses[i], living_ != nullptr ? living_->state.position[i] : Vec3{},
+          living_ != nullptr ? living_->state.velocity[i] : Vec3{});
     }
     for (const NewMass& mass : edits_.new_masses) {
       check_new_mass(mass);

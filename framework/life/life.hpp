@@ -78,6 +78,8 @@ struct Conditions {
   Method method;  ///< time-stepping method of the simulator
   StepRule step;
   double later = 0;  ///< delay of the windows of the fitness operators, s
+  /// If it is there, each newborn is perturbed, from this start of perturb().
+  std::optional<std::uint32_t> perturbed_birth = std::nullopt;
 };
 
 /// A function that is told what fraction of a job is done, 0 to 1.

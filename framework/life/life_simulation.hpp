@@ -45,6 +45,7 @@ class LifeSimulation {
   void run(std::span<Life> lives, const Stretch& stretch, const Move& move) const;
 
   Simulator& simulator() const { return simulator_; }
+  const Conditions& conditions() const { return conditions_; }
   double seconds() const { return clock_.seconds(); }  ///< wall-clock time spent on simulation, s
 
  private:

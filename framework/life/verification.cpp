@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 
@@ -15,7 +16,7 @@ namespace evodevo {
 namespace {
 
 constexpr double enough = 0.5;  ///< fraction of the fitness that an individual must keep, 1
-constexpr int perturbed_starts = 3;
+constexpr std::uint32_t perturbed_starts = 3, births = 3;
 constexpr double more_settling = 10;  ///< delay of the windows in the trial settled, s
 constexpr std::int64_t step_parts = 4;
 
@@ -48,6 +49,30 @@ Matured only(const Matured& all, std::span<const std::size_t> indices) {
   return some;
 }
 
+/// Returns a trial for each life that has been measured.
+std::vector<Trial> trials_of(const std::string& name, std::span<const Life> lives) {
+  std::vector<Trial> trials;
+  for (const Life& life : lives) {
+    trials.push_back({name, life.result.status, life.result.reason, std::nullopt});
+    if (life.result.status == Status::ok) trials.back().value = life.result.objectives.front();
+  }
+  return trials;
+}
+
+/// Lets champions live again from birth, perturbed, with other random numbers. Returns a trial for each.
+std::vector<Trial> reborn(const Experiment& experiment, Simulator& simulator, std::span<const Champion> champions,
+                          std::uint32_t start) {
+  Conditions perturbed(experiment);
+  perturbed.perturbed_birth = start;
+  const Evaluation evaluation(experiment, simulator, perturbed);
+  std::vector<Newborn> newborns;  // without records, and of a generation that no run reaches
+  for (const Champion& champion : champions)
+    newborns.push_back({champion.newborn.id, std::numeric_limits<std::uint32_t>::max() - start, champion.newborn.genome});
+  Matured matured = evaluation.matured(evaluation.birth.of(newborns), unwatched);
+  evaluation.measurement.run(matured, unwatched);
+  return trials_of("reborn-" + std::to_string(start + 1), matured.lives);
+}
+
 /// Repeats final evaluations of matured champions, each time with one thing changed. Several threads may use it.
 class Repetition {
  public:
@@ -70,12 +95,7 @@ class Repetition {
     change_all(matured.lives);
     for (auto& [scenario, lives] : matured.in_scenarios) change_all(lives);
     evaluation.measurement.run(matured, unwatched);
-    std::vector<Trial> trials;
-    for (const Life& life : matured.lives) {
-      trials.push_back({name, life.result.status, life.result.reason, std::nullopt});
-      if (life.result.status == Status::ok) trials.back().value = life.result.objectives.front();
-    }
-    return trials;
+    return trials_of(name, matured.lives);
   }
 
   /// The trials that find artefacts of the step and the method.
@@ -177,6 +197,9 @@ std::vector<Verification> verify(const Experiment& experiment, Simulator& simula
     });
   repeats.push_back([&] { return repetition.no_muscles(simulator); });
   repeats.push_back([&] { return repetition.settled(simulator); });
+  if (experiment.development.cycles > 0)  // otherwise, it would be the same as perturbed-1 to -3
+    for (std::uint32_t start = 0; start < births; ++start)
+      repeats.push_back([&, start] { return reborn(experiment, simulator, champions, start); });
   return verifications(champions, at_once(repeats));
 }
 

@@ -56,6 +56,8 @@ ExactSimulators exact_simulators(const Experiment& experiment, const Simulator& 
 ///   perturbed-1   to -3: each mass moved along each axis at random by up to 1e-4 of the body's longest side;
 ///   no-muscles    with muscles that are not actuated;
 ///   settled       with windows that open 10 s later.
+/// If robots develop, their whole lives are repeated as well:
+///   reborn-1      to -3: from birth on, with masses moved as in perturbed-1, and with other random numbers.
 /// quarter-step and other-method run on the CPU, so that they are independent of a GPU. All trials run at the same
 /// time. Results on the same device are the same every time.
 std::vector<Verification> verify(const Experiment& experiment, Simulator& simulator,

@@ -14,11 +14,13 @@ FAR = Quantity("distance", "m", True)
 CHEAP = Quantity("work", "J", False)
 
 
-def shown(best, springs=10, evaluations=5, marks=None, scenarios=()):
+def shown(best, springs=10, evaluations=5, marks=None, scenarios=(), reborn=()):
     """Returns the output of `show --json` for a run in which every generation costs the same. `scenarios` are the
-    scores of the best robot: pairs of a scenario and the score in one repeat."""
+    scores of the best robot: pairs of a scenario and the score in one repeat. `reborn`: whether it held when it was born
+    again."""
     tests = [{"scenario": name, "repeat": 1, "objectives": {"distance": score, "work": 0}} for name, score in scenarios]
-    verification = None if marks is None else {"marks": marks}
+    trials = [{"trial": "settled", "held": True}, *({"trial": f"reborn-{i}", "held": held} for i, held in enumerate(reborn))]
+    verification = None if marks is None else {"marks": marks, "trials": trials}
     return {
         "best": None if set(best) == {None} else {"verification": verification, "scenarios": tests},
         "map": None,
@@ -172,9 +174,15 @@ class Reports(unittest.TestCase):
             Variant(pathlib.Path("some")): [*runs, history(shown([None]), FAR)],
             Variant(pathlib.Path("none")): runs[-1:],
         }
-        some, none = (line.split(" | ")[-3:] for line in report.whole_runs(histories).splitlines()[-2:])
-        self.assertEqual(some, ["2 of 5", "2 of 5", "2 of 5 |"])
-        self.assertEqual(none, ["not verified", "-", "- |"])
+        some, none = (line.split(" | ")[-4:] for line in report.whole_runs(histories).splitlines()[-2:])
+        self.assertEqual(some, ["2 of 5", "2 of 5", "2 of 5", "- |"])
+        self.assertEqual(none, ["not verified", "-", "-", "- |"])
+
+    def test_those_born_again_that_kept_their_score_in_most_lives_are_counted(self):
+        lives = [[True, True, False], [True, False, False], [True, True, True], [True, False], []]
+        runs = [history(shown([1], marks=[], reborn=some), FAR) for some in lives]
+        line = report.whole_runs({Variant(pathlib.Path("some")): runs}).splitlines()[-1]
+        self.assertEqual(line.split(" | ")[-4:], ["5 of 5", "0 of 5", "0 of 5", "2 of 4 |"])
 
     def test_other_builds_are_named(self):
         def provenance(run_hash, program="p", device="cpu"):

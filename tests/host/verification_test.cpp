@@ -239,6 +239,37 @@ TEST(Verify, ABodyThatNoOperatorChangesKeepsItsFitnessToo) {
   }
 }
 
+TEST(Verify, RobotsThatDevelopAreBornAgain) {
+  const auto reborn = [](const Verification& verification) {
+    std::vector<std::optional<double>> values;
+    for (const Trial& trial : verification.trials)
+      if (trial.name.starts_with("reborn-")) values.push_back(trial.value);
+    return values;
+  };
+  const auto best_of = [&](const Experiment& experiment) {
+    const auto simulator = simulator_for(experiment);
+    std::vector<Individual> individuals = evaluated(experiment, *simulator, breed(experiment, {}, 0, 0, 12));
+    std::erase_if(individuals, [](const Individual& i) { return i.result.status != Status::ok; });
+    return verified(experiment, *simulator, {&individuals.at(0), 1}).front();
+  };
+  const Experiment developing = testing::read(testing::small_experiment);  // with an operator that draws random numbers
+  const auto values = reborn(best_of(developing));
+  ASSERT_EQ(values.size(), 3u);
+  EXPECT_NE(values[0], values[1]);
+  EXPECT_NE(values[1], values[2]);
+  EXPECT_EQ(reborn(best_of(developing)), values) << "the same every time";
+  EXPECT_THAT(reborn(best_of(testing::read(walkers))), ::testing::IsEmpty()) << "that is what perturbed-1 to -3 are";
+}
+
+/// The cycles of its development change nothing.
+TEST(Verify, AWalkerThatDrawsNoNumbersIsBornAgainAsOne) {
+  const Verification walker = verified_best(testing::read(walkers + "[development]\ncycles = 2\n"));
+  for (const char* trial : {"reborn-1", "reborn-2", "reborn-3"}) {
+    EXPECT_NE(value(walker, trial), walker.fitness) << "it is perturbed";
+    EXPECT_GT(value(walker, trial), walker.fitness / 2) << trial;
+  }
+}
+
 /// A small run, and the folder with its archive.
 struct SmallRun {
   testing::Scratch scratch;

@@ -139,7 +139,7 @@ Topic verification() {
           {"Fitness can come from an error of the simulation, such as energy that too long a time step adds. At its "
            "end, a run therefore simulates its best individuals again ([experiment] verify, 1 by default), and "
            "`evodevo verify` does so for more of them. The body develops as in the run; then its final evaluation "
-           "is repeated in eight trials.",
+           "is repeated in eight trials. A robot that develops is also born again three times.",
            "A trial has held if the first objective is as good as in the run, better, or worse by at most half of its "
            "absolute value. An individual is an artefact if quarter-step or other-method did not hold. It is passive "
            "if it keeps more than half of its fitness without muscles, or has lost more than half of it after ten more "
@@ -150,16 +150,20 @@ Topic verification() {
            "tried further. All four trials run on the device of the run, while quarter-step and other-method at the "
            "end "
            "of a run always use the CPU."},
-      .definitions = {{"again", "The final evaluation as it was in the run."},
-                      {"quarter-step", "A quarter of the time step, in double precision."},
-                      {"other-method",
-                       "Another integration method, in double precision, with a quarter of the "
-                       "longest stable step of the body."},
-                      {"perturbed-1, perturbed-2, perturbed-3",
-                       "A perturbation: each mass is moved at random by up "
-                       "to 1e-4 of the longest side of the body."},
-                      {"no-muscles", "No muscle changes its length."},
-                      {"settled", "The measurement begins ten seconds later."}},
+      .definitions =
+          {{"again", "The final evaluation as it was in the run."},
+           {"quarter-step", "A quarter of the time step, in double precision."},
+           {"other-method",
+            "Another integration method, in double precision, with a quarter of the "
+            "longest stable step of the body."},
+           {"perturbed-1, perturbed-2, perturbed-3",
+            "A perturbation: each mass is moved at random by up "
+            "to 1e-4 of the longest side of the body."},
+           {"no-muscles", "No muscle changes its length."},
+           {"settled", "The measurement begins ten seconds later."},
+           {"reborn-1, reborn-2, reborn-3",
+            "If there is development: a new life from birth on, which begins with such a perturbation, and in "
+            "which operators draw other random numbers."}},
       .example = "evodevo verify runs/quickstart-1 --best 10\n"};
 }
 

@@ -50,6 +50,7 @@ class History:
     refused: list  # by verification before the front
     seconds: list
     marks: list | None  # of the run's best robot, such as "artefact"; None if it was not verified
+    reborn: list  # whether it kept its score in each of the lives in which verification let it be born again
     scenarios: dict  # scores of the run's best robot by scenario
     axes: list | None  # of the run's map; None if it has no map
 
@@ -84,6 +85,7 @@ def history(shown, objective):
         refused=[a + b for a, b in zip(summed("artefact"), summed("passive"))],
         seconds=summed("wall_time"),
         marks=verification and verification["marks"],
+        reborn=[trial["held"] for trial in (verification or {}).get("trials", ()) if trial["trial"].startswith("reborn-")],
         scenarios=by_scenario(shown["best"], objective),
         axes=shown["map"] and shown["map"]["axes"],
     )

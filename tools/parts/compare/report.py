@@ -18,7 +18,8 @@ Intervals of medians over seeds are by the percentile bootstrap, from {inference
 
 Refused individuals lost their fitness in verification before the front (`[experiment] verify_front`), as artefacts or as
 passive. The best robot of a whole run, where it was verified (`[experiment] verify`), held, or is an artefact of the time step,
-passive, or both.
+passive, or both. If robots develop, it was also born three times more, with masses in slightly other places and with
+other random numbers; "best born again" counts those that were at least half as good in two of these lives.
 """
 
 TESTS = f"""\
@@ -98,12 +99,14 @@ def section(histories, objective, axis, against):
 
 def verified(runs):
     """Returns table cells that count, among the verified best robots, those without a mark, the artefacts and the
-    passive ones."""
+    passive ones; and among those that were born again, those that kept their score in most of these lives."""
     marks = [history.marks for history in runs if history.marks is not None]
     if not marks:
-        return ["not verified", "-", "-"]
+        return ["not verified", "-", "-", "-"]
     counts = [marks.count([]), *(sum(mark in some for some in marks) for mark in ("artefact", "passive"))]
-    return [f"{count} of {len(marks)}" for count in counts]
+    reborn = [history.reborn for history in runs if history.reborn]
+    kept = sum(2 * sum(lives) > len(lives) for lives in reborn)
+    return [*(f"{count} of {len(marks)}" for count in counts), f"{kept} of {len(reborn)}" if reborn else "-"]
 
 
 def whole_runs(histories):
@@ -125,7 +128,7 @@ def whole_runs(histories):
             ]
         )
     header = ["", "generations", "evaluations", "spring evaluations", "diverged", "invalid", "refused", "hours"]
-    header += ["best held", "best is artefact", "best is passive"]
+    header += ["best held", "best is artefact", "best is passive", "best born again"]
     return f"## All runs, each to its end\n\n{table(header, rows)}"
 
 
