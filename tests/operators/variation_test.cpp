@@ -193,6 +193,32 @@ TEST(BlockRates, VariesOnePositionOrMoreOfAllBlocks) {
   EXPECT_NEAR((seen[{2}]) / double(rounds), 0.16 / 0.36, 0.05);
 }
 
+/// Counts would not tell a share from one that is 1 % larger, but the numbers that are drawn do.
+TEST(BlockRates, DrawsAPositionIfTheNumberIsBelowTheShare) {
+  int tried = 0;
+  for (std::uint32_t seed = 1; seed <= 100; ++seed) {
+    Rng numbers = stream(seed);
+    numbers.normal();  // for the only rate
+    const double first = numbers.uniform(), second = numbers.uniform();
+    if (first < 0.01 || second > 0.99 * first) continue;  // so that the second position is always drawn at once
+    ++tried;
+    for (const double part : {0.995, 1.005}) {
+      const auto mutation = make<Mutation>(
+          "block-rates", "rate_sigma = 0.0\nleast_rate = 1.0\nsigma = 0.01\nshare = " + std::to_string(part * first));
+      Layout voxel;
+      voxel.add_block({{-1, 1}, {2, 6}}, "voxel");
+      const Layout layout = with_own_genes(*mutation, voxel);
+      const Genome parent{0, 4, 1};
+      Genome child = parent;
+      Rng rng = stream(seed);
+      mutation->mutate(child, layout, rng);
+      EXPECT_EQ(child[0] != parent[0], part > 1) << seed;
+      EXPECT_NE(child[1], parent[1]) << seed;
+    }
+  }
+  EXPECT_GT(tried, 20);
+}
+
 TEST(BlockRates, RatesWalkAtRandomAboveTheLeast) {
   const auto mutation = make<Mutation>("block-rates", "rate_sigma = 0.1\nleast_rate = 0.05");
   Layout own = mutation->layout(mixed_layout());
