@@ -266,7 +266,7 @@ class Verbosity : public ::testing::Test {
 
 TEST_F(Verbosity, QuietPrintsResultsAlone) {
   const auto lines = run({"--quiet"});
-  ASSERT_EQ(lines.size(), 2u + 8u) << "the best, its verification and its trials";
+  ASSERT_EQ(lines.size(), 2u + 11u) << "the best, its verification and its trials";
   EXPECT_THAT(lines[0], AllOf(HasSubstr("best: individual "), HasSubstr(folder_)));
   EXPECT_THAT(lines[1], ::testing::StartsWith("individual "));
 }
