@@ -10,13 +10,14 @@ The best robot of each run is born again, LIVES times with other random numbers,
 last population of each run goes on to evolve on a slope. The bodies of BODIES robots of each last population are
 compared in pairs. Each result is kept in `outcomes/rows`, and what is there is not measured again, so that a run can be
 removed once it has been measured; one that was removed before is left out. `--jobs N` makes N measurements at once.
-Prints medians over the runs with their intervals. Needs SciPy.
+Prints medians over the runs with their intervals, and writes all numbers to `outcomes/outcomes.csv`. Needs SciPy.
 """
 
 import argparse
 import collections
 import concurrent.futures
 import contextlib
+import csv
 import dataclasses
 import functools
 import itertools
@@ -124,32 +125,35 @@ def lives_in_scenarios(arm, run):
 
 
 def distances_of_lives(out, arm, run):
-    """Returns for each further life of the best robot of a run its distances by scenario, without those in which it has
-    none; None if they have not been measured."""
+    """Returns for each further life of the best robot of a run its distances by scenario. Lives in which it diverges
+    in one of the scenes have no distances, and are left out. None if the lives have not been measured."""
     again = lives_in_scenarios(arm, run)
     if not all(life.row(out).exists() for life in again):
         return None
     lives = [rows.read(life.row(out)) for life in again]
-    return [by_scenario(shown["best"], objective_of(shown["objectives"][0])) for shown in lives]
+    return [by_scenario(shown["best"], objective_of(shown["objectives"][0])) for shown in lives if shown["best"]]
 
 
 def born_again(_, out, arm, run):
     """Returns how far the best robot of a run gets at home in other lives, in which development draws other random
-    numbers; None if that has not been measured and the run is gone. The same holds for the other outcomes."""
+    numbers; None if nothing has been measured and the run is gone. The same holds for the other outcomes."""
     lives = distances_of_lives(out, arm, run)
-    if lives is None:
+    if not lives:
         return None
     shown = rows.read(arm.row(run))
     distance = shown["best"]["objectives"][shown["objectives"][0]["name"]]
-    again = [life.get("home", -math.inf) for life in lives]
-    kept = sum(each >= ENOUGH * distance for each in again)
-    return {"in the run": distance, "median life": statistics.median(again), "lives that kept half, %": 100 * kept / len(again)}
+    again = [life["home"] for life in lives]
+    kept = {"lives that kept half, %": [each >= ENOUGH * distance for each in again]}
+    if perturbed := history(shown, objective_of(shown["objectives"][0])).reborn:
+        kept["of lives with other places at birth, %"] = perturbed
+    shares = {what: 100 * statistics.fmean(lives) for what, lives in kept.items()}
+    return {"in the run": distance, "median life": statistics.median(again), **shares}
 
 
 def in_scenarios(_, out, arm, run):
     """Returns the distances of the best robot of a run by scenario, each the mean of several lives."""
     lives = distances_of_lives(out, arm, run)
-    if lives is None:
+    if not lives:
         return None
     scores = collections.defaultdict(list)
     for scenario, score in itertools.chain.from_iterable(life.items() for life in lives):
@@ -206,22 +210,31 @@ def living(folder):
         return [number for (number,) in found]
 
 
+def matured(program, run, number):
+    """Returns the matured body of an individual, or None if it does not mature on this device: on another one than that
+    of the run, it can diverge."""
+    try:
+        return program.json("body", run, "--individual", number, "--matured")
+    except subprocess.CalledProcessError as error:
+        print(f"left out: {error.stderr.splitlines()[-1]} ({run})", file=sys.stderr)
+        return None
+
+
 def between_bodies(program, out, arm, run):
     """Returns the mean distances between the bodies of a population: of their shapes at birth, and of the lengths of
-    their springs at birth and matured."""
+    their springs at birth and, as far as they mature, matured."""
     row = out / "rows" / "bodies" / arm.name / f"{run.name}.json"
     if not row.exists():
         if not run.exists():
             return None
         ids = living(run)
         chosen = ids[:: max(1, len(ids) // BODIES)][:BODIES]
-        newborn, matured = (
-            [program.json("body", run, "--individual", number, *words) for number in chosen] for words in ((), ("--matured",))
-        )
+        newborn = [program.json("body", run, "--individual", number) for number in chosen]
+        grown = [body for number in chosen if (body := matured(program, run, number)) is not None]
         distances = {
             "shape at birth, body lengths": mean_distance(map(shape, newborn)),
             "springs at birth, m": mean_distance(map(lengths, newborn)),
-            "springs when matured, m": mean_distance(map(lengths, matured)),
+            "springs when matured, m": mean_distance(map(lengths, grown)),
         }
         rows.store(row, distances)
     return json.loads(row.read_text())
@@ -237,14 +250,26 @@ def line_of_the_best(program, out, arm, run):
 
 
 def report(title, of_arms):
-    """Returns a table of medians over the runs. `of_arms`: for each arm a list with a dictionary for each run."""
-    columns = list(dict.fromkeys(column for runs in of_arms.values() for run in runs for column in run))
+    """Returns a table of medians over the runs. `of_arms`: for each arm and each run what was measured of it."""
+    columns = list(dict.fromkeys(column for runs in of_arms.values() for run in runs.values() for column in run))
 
     def cell(runs, column):
-        return median_with_interval([run.get(column, -math.inf) for run in runs])
+        if not any(column in run for run in runs.values()):
+            return "-"
+        return median_with_interval([run.get(column, -math.inf) for run in runs.values()])
 
     lines = [[f"`{arm}`", str(len(runs)), *(cell(runs, column) for column in columns)] for arm, runs in of_arms.items()]
     return f"## {title}\n\n{table(['', 'runs', *columns], lines)}"
+
+
+def write_csv(known, file):
+    """Writes each number: of which arm and run, and what it is. `known`: the tables of report() by their titles."""
+    with file.open("w", newline="") as stream:
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(["arm", "run", "outcome", "quantity", "value"])
+        for title, of_arms in known:
+            for arm, runs in of_arms.items():
+                writer.writerows([arm, name, title, *number] for name, run in runs.items() for number in run.items())
 
 
 OUTCOMES = (
@@ -273,13 +298,15 @@ def main():
 
         def begin(measure):
             """Returns for each arm what is measured of its runs, each as soon as it is known."""
-            return {arm.name: pool.map(functools.partial(measure, program, out, arm), arm.runs) for arm in arms}
+            return {arm: pool.map(functools.partial(measure, program, out, arm), arm.runs) for arm in arms}
+
+        def end(arm, measured):
+            """Returns what was measured of the runs of an arm, by their names."""
+            return {run.name: numbers for run, numbers in zip(arm.runs, measured) if numbers is not None}
 
         begun = [(title, begin(measure)) for title, measure in OUTCOMES]
-        known = [
-            (title, {arm: [run for run in runs if run is not None] for arm, runs in of_arms.items()})
-            for title, of_arms in begun
-        ]
+        known = [(title, {arm.name: end(arm, runs) for arm, runs in of_arms.items()}) for title, of_arms in begun]
+    write_csv(known, out / "outcomes.csv")
     text = "\n".join(report(title, of_arms) for title, of_arms in known)
     (out / "report.md").write_text(text)
     print(text)
