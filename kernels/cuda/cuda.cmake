@@ -55,6 +55,7 @@ target_sources(evodevo_kernels PRIVATE
   cuda/layout/arrangement/ownership.cpp
   cuda/layout/arrangement/partition.cpp
   cuda/layout/arrangement/row_order.cpp
+  cuda/layout/arrangement/shape.cpp
   cuda/layout/features.cpp
   cuda/layout/force_range.cpp
   cuda/layout/resident.cpp

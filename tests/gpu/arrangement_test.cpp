@@ -142,6 +142,21 @@ TEST(Arrangement, HoldsEverySpringOnce) {
     for (const unsigned block : {16u, 32u}) expect_sound(random_body(masses, 25, masses), block);
 }
 
+TEST(Arrangement, HoldsEverySpringOnceIfThereAreFewBodies) {
+  for (const std::uint32_t masses : {1u, 31u, 64u, 200u, 1000u})
+    for (const unsigned at_once : {1u, 3u}) {
+      const Outline outline(random_body(masses, 25, masses));
+      expect_sound(Arrangement(outline, {32, at_once, 200}), outline, 32);
+    }
+}
+
+TEST(Arrangement, SpreadsASmallBodyOverMoreWarpsTheFewerBodiesThereAre) {
+  const Outline outline(random_body(64, 25, 1));
+  const auto warps = [&](unsigned at_once) { return Arrangement(outline, {32, at_once}).shape.warps; };
+  EXPECT_GT(warps(1), warps(4));
+  EXPECT_GT(warps(4), warps(Target::many));
+}
+
 TEST(Arrangement, HoldsLargeAndUnevenBodies) {
   expect_sound(random_body(3000, 25, 1), 32);
   Body star;

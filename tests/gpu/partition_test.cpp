@@ -112,6 +112,13 @@ TEST(ArrangedBody, DependsOnTheBodyAloneIfAsked) {
   EXPECT_EQ(slots(ArrangedBody::of(body, 1, 32, before, nothing)), slots(alone));
   EXPECT_EQ(slots(ArrangedBody::of(body, 1, 32, patched, nothing)), slots(alone)) << "the same body, but patched";
   EXPECT_EQ(ArrangedBody::of(body, 1, 32, alone, nothing), alone);
+  body = random_body(64, 20, 4);
+  const auto of_many = ArrangedBody::of(body, 1, 32, nullptr, keep),
+             of_few = ArrangedBody::of(body, 1, {32, 1}, nullptr, keep);
+  const auto warps = [](const auto& arranged) { return arranged->blocks().front().arrangement.shape.warps; };
+  EXPECT_GT(warps(of_few), warps(of_many));
+  EXPECT_EQ(ArrangedBody::of(body, 1, 32, of_few, keep), of_few);
+  EXPECT_EQ(warps(ArrangedBody::of(body, 1, 32, of_few, nothing)), warps(of_many));
 }
 
 }  // namespace

@@ -99,7 +99,8 @@ TEST(Resident, LargeBodiesGetASmallClusterThatHoldsTheirSprings) {
   EXPECT_EQ(blocks(20000, 1, 1), 0u);
   EXPECT_EQ(blocks(1000, 16, 7), 5u) << "clusters of seven would waste multiprocessors";
   EXPECT_EQ(blocks(1000, 16, 7, true), 1u) << "the rounding of work would depend on the number";
-  EXPECT_EQ(blocks(100, 16, 16), 2u) << "a block needs enough masses";
+  EXPECT_EQ(blocks(300, 16, 16), 4u) << "a block needs enough masses";
+  EXPECT_EQ(blocks(290, 16, 16), 1u) << "a small body is faster in one block";
 }
 
 /// The shared memory of the blocks that simulate a body, with its positions; the halos are filled as the kernel does

@@ -12,10 +12,21 @@ constexpr std::size_t reserved_in_a_cluster = 5 << 8;
 
 std::size_t aligned(std::size_t size) { return (size + 15) / 16 * 16; }
 
-// more blocks than necessary only if each has so many masses, on average, and only for runs so long that they repay
-// arranging the body anew
-constexpr std::size_t least_masses = 48;
+// more blocks than necessary only for bodies of so many masses, if each block has enough of them, on average, and only
+// for runs so long that they repay arranging the body anew
+constexpr std::size_t worth_a_cluster = 300, least_masses = 62;
 constexpr std::uint64_t steps_worth_a_cluster = 10000;
+
+/// Whether the arrangement of a body may depend on the number of bodies. In other cases, the rounding of work or of
+/// samples would depend on it.
+bool is_free(const Features& features) { return !features.work && !features.float64; }
+
+/// What a body with these features is arranged for.
+Target target_of(const Body& body, const Features& features, const Room& room) {
+  const bool is_filled = features.actuation && !has_codes(features);
+  return {largest_block(features.float64), is_free(features) ? room.at_once : Target::many,
+          is_filled ? body.materials.size() + 1 : 0};
+}
 
 }  // namespace
 
@@ -40,7 +51,7 @@ std::optional<Resident<T>> Resident<T>::arrange(const Task& task, const Features
     const std::size_t chip = largest_chip(room.shared_bytes, blocks > 1);
     const bool is_last = blocks == room.largest_cluster;
     if (!may_suffice(task, features, blocks, is_last, chip)) continue;
-    Resident resident(task, features, blocks, needs);
+    Resident resident(task, features, blocks, target_of(*task.body, features, room), needs);
     resident.divide_chip(true, chip);
     if (resident.chip_.size > chip || !(is_last || resident.is_fast(chip))) continue;
     resident.divide_chip(features.work, chip);
@@ -55,10 +66,10 @@ std::optional<Resident<T>> Resident<T>::arrange(const Task& task, const Features
 /// The number of blocks that a body should get, even if it needs fewer.
 template <class T>
 unsigned Resident<T>::wanted_blocks(const Task& task, const Features& features, const Room& room) {
-  const bool free = !features.work && !features.float64;  // otherwise, rounding would depend on the number
   const std::uint64_t steps = task.course->steps + task.steps + task.later_steps;
-  if (!free || steps < steps_worth_a_cluster) return 1;
-  const auto most = static_cast<unsigned>(task.body->masses.size() / least_masses);
+  if (!is_free(features) || steps < steps_worth_a_cluster) return 1;
+  const std::size_t masses = task.body->masses.size();
+  const auto most = static_cast<unsigned>(masses < worth_a_cluster ? 1 : masses / least_masses);
   const unsigned wanted = std::min({room.wanted_blocks, room.largest_cluster, most});
   const auto larger = std::upper_bound(std::begin(cluster_sizes), std::end(cluster_sizes), std::max(wanted, 1u));
   return *std::prev(larger);
@@ -98,10 +109,11 @@ bool Resident<T>::may_suffice(const Task& task, const Features& features, unsign
 }
 
 template <class T>
-Resident<T>::Resident(const Task& task, const Features& features, unsigned blocks, std::size_t needs)
+Resident<T>::Resident(const Task& task, const Features& features, unsigned blocks, const Target& target,
+                      std::size_t needs)
     : task_(&task),
       features_(features),
-      arranged_(ArrangedBody::of(*task.body, blocks, largest_block(features.float64), task.preparation,
+      arranged_(ArrangedBody::of(*task.body, blocks, target, task.preparation,
                                  features.work ? ArrangedBody::Keep::nothing : ArrangedBody::Keep::all, needs)) {}
 
 /// The memory of the masses and the halo of the block that needs most, bytes.

@@ -28,9 +28,10 @@ inline constexpr unsigned cluster_sizes[] = {1, 2, 3, 4, 5, 8, 16};
 
 /// What a device offers to a body.
 struct Room {
-  std::size_t shared_bytes;      ///< shared memory of a block
-  unsigned largest_cluster = 1;  ///< blocks that can simulate a body together
-  unsigned wanted_blocks = 1;    ///< for long runs; more than a body needs if there are few bodies
+  std::size_t shared_bytes;         ///< shared memory of a block
+  unsigned largest_cluster = 1;     ///< blocks that can simulate a body together
+  unsigned wanted_blocks = 1;       ///< for long runs; more than a body needs if there are few bodies
+  unsigned at_once = Target::many;  ///< as in Target
 };
 
 /// How a body is laid out on the chip. It refers to its task, which must outlive it.
@@ -71,7 +72,7 @@ class Resident {
   void unpack_samples(std::uint64_t range, const Regions& host, Task& task) const;
 
  private:
-  Resident(const Task& task, const Features& features, unsigned blocks, std::size_t needs);
+  Resident(const Task& task, const Features& features, unsigned blocks, const Target& target, std::size_t needs);
   void divide_chip(bool with_rates, std::size_t shared_bytes);
   std::size_t waves_in(std::size_t slots) const;
   void reserve();

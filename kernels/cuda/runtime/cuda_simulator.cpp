@@ -1,7 +1,7 @@
 // The simulator on a GPU.
 //
-//   tasks ─► begin: courses ─► plan: layout of each body ─► Coalescer: a batch, which may have plans of other callers too
-//   ─► portions that fit ─► Portion::simulate ─► answers
+//   tasks ─► begin: courses ─► plan: layout of each body ─► Coalescer: a batch, which may have plans of other callers
+//   too ─► portions that fit ─► Portion::simulate ─► answers
 #include "cuda/runtime/cuda_simulator.hpp"
 
 #include <algorithm>
@@ -58,14 +58,15 @@ class DeviceSimulator final : public CudaSimulator {
     const SplitMaterials split(tasks, workers());
     const std::vector<Task*> live = begin(tasks, recording);
     const auto presence = resources_->present.add(live.size());
-    const cuda::Run run{
-        scene_,
-        stepping_,
-        recording,
-        device_,
-        cuda::spans_per_range(live),
-        largest_cluster(),
-        clusters_.blocks_for(std::max(resources_->announced.number(), resources_->present.number()), *common_.kernels)};
+    const std::size_t bodies = std::max(resources_->announced.number(), resources_->present.number());
+    const cuda::Run run{scene_,
+                        stepping_,
+                        recording,
+                        device_,
+                        cuda::spans_per_range(live),
+                        largest_cluster(),
+                        clusters_.blocks_for(bodies, *common_.kernels),
+                        bodies_at_once(bodies)};
     std::get<cuda::DeviceResources::Batches<T>>(resources_->coalescers)
         .run(cuda::Kind(run), plan(live, run), [&](std::span<cuda::Plan<T>> batch) { simulate(batch, run); });
   }
@@ -95,6 +96,11 @@ class DeviceSimulator final : public CudaSimulator {
   }
 
  private:
+  /// The number of bodies for each multiprocessor.
+  unsigned bodies_at_once(std::size_t bodies) const {
+    return static_cast<unsigned>((bodies + device_.multiprocessors - 1) / device_.multiprocessors);
+  }
+
   /// Clears the results, and returns the tasks that need the device. Tasks without masses or steps end here; only their
   /// time advances.
   std::vector<Task*> begin(std::span<Task> tasks, Recording recording) const {

@@ -42,12 +42,12 @@ double wait_for(const std::deque<Event>& ends, const Event& begin) {
 template <class T>
 Plan<T>::Plan(Task& task_, const Run& run)
     : task(&task_), scene(&scene_of(task_, run.scene)), body([&]() -> decltype(body) {
-        const Features features = features_of(*scene, run.stepping, run.recording, material_features(*task_.body),
-                                              channels_on_device(task_));
+        const Features features =
+            features_of(*scene, run.stepping, run.recording, material_features(*task_.body), channels_on_device(task_));
         if (is_explicit(run.stepping.method))
-          if (auto resident = Resident<T>::arrange(task_, features,
-                                                   {run.device.shared_bytes, run.largest_cluster, run.wanted_blocks},
-                                                   run.spans_per_range))
+          if (auto resident = Resident<T>::arrange(
+                  task_, features, {run.device.shared_bytes, run.largest_cluster, run.wanted_blocks, run.at_once},
+                  run.spans_per_range))
             return *std::move(resident);
         return Streamed<T>(task_, features, Resident<T>::largest_chip(run.device.shared_bytes), run.spans_per_range);
       }()) {}

@@ -35,8 +35,8 @@ struct Run {
   Stepping stepping;
   Recording recording;
   Device device;
-  std::uint64_t spans_per_range;            ///< check spans in a range of samples
-  unsigned largest_cluster, wanted_blocks;  ///< as in Room
+  std::uint64_t spans_per_range;                     ///< check spans in a range of samples
+  unsigned largest_cluster, wanted_blocks, at_once;  ///< as in Room
 };
 
 /// What bodies of different runs must have in common to be simulated together.

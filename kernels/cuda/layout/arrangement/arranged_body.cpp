@@ -7,19 +7,19 @@
 
 namespace evodevo::cuda {
 
-std::shared_ptr<const ArrangedBody> ArrangedBody::of(const Body& body, unsigned blocks, unsigned largest_block,
+std::shared_ptr<const ArrangedBody> ArrangedBody::of(const Body& body, unsigned blocks, const Target& target,
                                                      const std::shared_ptr<const Preparation>& earlier, Keep keep,
                                                      std::size_t needs) {
   const auto before = std::dynamic_pointer_cast<const ArrangedBody>(earlier);
-  const bool similar = before && before->largest_block_ == largest_block && before->blocks_.size() == blocks &&
-                       (keep == Keep::all || !before->patched_);
+  const bool similar = before && before->target_.largest_block == target.largest_block &&
+                       before->blocks_.size() == blocks &&
+                       (keep == Keep::all || (before->target_ == target && !before->patched_));
   if (similar && before->is_of(body)) return before;
-  std::shared_ptr<ArrangedBody> arranged(new ArrangedBody(Outline(body), largest_block));
+  std::shared_ptr<ArrangedBody> arranged(new ArrangedBody(Outline(body), target));
   arranged->needs_ = needs;
   arranged->patched_ = similar && keep == Keep::all && blocks == 1;
   if (arranged->patched_)
-    arranged->add(Arrangement(arranged->outline_, largest_block, before->blocks_.front().arrangement, before->outline_),
-                  {});
+    arranged->add(Arrangement(arranged->outline_, target, before->blocks_.front().arrangement, before->outline_), {});
   else
     arranged->arrange(blocks);
   return arranged;
@@ -32,11 +32,11 @@ bool ArrangedBody::is_of(const Body& body) const {
 }
 
 void ArrangedBody::arrange(unsigned blocks) {
-  if (blocks == 1) return add(Arrangement(outline_, largest_block_), {});
+  if (blocks == 1) return add(Arrangement(outline_, target_), {});
   std::vector<Part> parts = partition(outline_, blocks);
   std::vector<const Outline*> outlines;
   for (const Part& part : parts) outlines.push_back(&part.outline);
-  std::vector<Arrangement> arrangements = Arrangement::of_parts(outlines, largest_block_);
+  std::vector<Arrangement> arrangements = Arrangement::of_parts(outlines, target_);
   for (std::size_t p = 0; p < parts.size(); ++p) add(std::move(arrangements[p]), std::move(parts[p].springs));
   index_of_.resize(outline_.rest.size());
   slot_of_.assign(outline_.ends.size(), Arrangement::none);

@@ -34,12 +34,12 @@ class ArrangedBody final : public Preparation {
   /// How much of an earlier arrangement may be kept.
   enum class Keep {
     all,     ///< as much as possible; then the arrangement depends on the body's earlier life
-    nothing  ///< the arrangement depends only on the body's outline
+    nothing  ///< the arrangement depends only on the body's outline and the target
   };
 
-  /// The arrangement of `body` for `blocks` blocks of at most `largest_block` warps: `earlier` if it fits, otherwise a
-  /// new one. Several blocks are always arranged anew. A new arrangement gets `needs`.
-  static std::shared_ptr<const ArrangedBody> of(const Body& body, unsigned blocks, unsigned largest_block,
+  /// The arrangement of `body` for `blocks` blocks: `earlier` if it fits, even if it was for other numbers of bodies,
+  /// otherwise a new one. Several blocks are always arranged anew. A new arrangement gets `needs`.
+  static std::shared_ptr<const ArrangedBody> of(const Body& body, unsigned blocks, const Target& target,
                                                 const std::shared_ptr<const Preparation>& earlier, Keep keep,
                                                 std::size_t needs = 0);
 
@@ -55,14 +55,14 @@ class ArrangedBody final : public Preparation {
   std::size_t slots() const { return slots_; }
 
  private:
-  ArrangedBody(Outline outline, unsigned largest_block) : outline_(std::move(outline)), largest_block_(largest_block) {}
+  ArrangedBody(Outline outline, const Target& target) : outline_(std::move(outline)), target_(target) {}
 
   void arrange(unsigned blocks);
   void add(Arrangement arrangement, std::vector<std::uint32_t> springs);
   void find_copies(std::span<const struct Part> parts);
 
   Outline outline_;
-  unsigned largest_block_;
+  Target target_;
   bool patched_ = false;  ///< whether it keeps anything of an earlier one
   std::size_t needs_ = 0;
   std::vector<Block> blocks_;

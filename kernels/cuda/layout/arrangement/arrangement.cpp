@@ -10,99 +10,6 @@
 #include "cuda/layout/formats.hpp"
 
 namespace evodevo::cuda {
-namespace {
-
-constexpr unsigned blocks[] = {1, 2, 4, 8, 16, 32};  // few values, because each needs a launch of its own
-constexpr unsigned resident_warps = 32;              // warps that fit on a multiprocessor, at 64 registers per thread
-
-// cycles in which shared memory is busy with a row, with a row of cut springs, and with the position and the force of
-// an owner; shared memory limits the speed
-constexpr std::size_t access = 11, cut_access = 8, owner_access = 6;
-
-unsigned divided(std::size_t a, std::size_t b) { return static_cast<unsigned>((a + b - 1) / b); }
-
-/// The number of warps in a block of which `warps` have springs: at most two masses per thread, if it may be so large.
-unsigned block_for(unsigned warps, std::uint32_t groups, unsigned largest_block) {
-  return *std::lower_bound(std::begin(blocks), std::end(blocks),
-                           std::max(warps, std::min(divided(groups, 2), largest_block)));
-}
-
-/// The number of blocks that a multiprocessor simulates at once, as far as registers and shared memory go, in single
-/// precision and without dashpots.
-std::size_t blocks_at_once(unsigned block, std::size_t rows, std::uint32_t groups) {
-  constexpr std::size_t chip = 227 << 10, others = 3 << 10;  // bytes; others: table, kernel and system
-  const std::size_t bytes = rows * lanes * sizeof(Record<float>) + (groups + 1) * group_bytes<float, false> + others;
-  return std::max<std::size_t>(1, std::min<std::size_t>(resident_warps / block, chip / bytes));
-}
-
-/// The shape with which a multiprocessor takes the shortest time for a step of a body. While one block moves its masses
-/// and waits for its warps, others that are on the multiprocessor compute springs. The numbers of cycles were fitted to
-/// measurements of bodies of 64 to 1,000 masses in blocks of different shapes on an H200.
-Shape shape_for_block(const Needs& needs, unsigned largest_block) {
-  constexpr std::size_t moving = 1000;   // cycles in which a block does not access shared memory for springs
-  constexpr std::size_t row_time = 100;  // cycles from a warp's row to its next, if no other block is there
-  // cycles of a row in which one of the four schedulers has a warp less than others; a block's warps take turns in them
-  constexpr std::size_t uneven = 4;
-  Shape best;
-  std::size_t best_cost = ~std::size_t{0};
-  for (unsigned warps = largest_block; warps > 0; --warps) {
-    const unsigned rows = std::max(1u, divided(needs.rows, warps));
-    if (rows > most_rows) break;
-    const unsigned block = block_for(warps, needs.groups, largest_block);
-    const std::size_t all = std::size_t{rows} * warps, missing = block < 4 ? 0 : 4 * divided(warps, 4) - warps;
-    const std::size_t busy = access * all + owner_access * warps + uneven * missing * rows;
-    const std::size_t alone = std::max(busy, row_time * rows) + moving;
-    std::size_t cost = busy + (alone - busy) / blocks_at_once(block, all, needs.groups);
-    // more rows slow a recording of stress by about 6 %; a body keeps its shape, and half of its steps record stress
-    if (rows > rows_with_fast_stress) cost += cost / 32;
-    if (cost >= best_cost) continue;
-    best = {block, warps, 0, rows, 0, 1, 0};
-    best_cost = cost;
-  }
-  return best;
-}
-
-/// The shape for the blocks of a cluster, each of which has a multiprocessor for itself, that takes the shortest time.
-/// Either shared memory is busy all the time, or the time is that of the warps with the most rows. Those with cut
-/// springs begin late, because they wait for other blocks.
-Shape shape_for_cluster(const Needs& needs, unsigned largest_block) {
-  constexpr std::size_t row_time = 60, waiting = 700;  // cycles from a warp's row to its next, and until it may begin
-  Shape best;
-  std::size_t best_cost = ~std::size_t{0};
-  for (unsigned warps = largest_block - 1; warps > 0; --warps) {
-    const unsigned rows = std::max(1u, divided(needs.rows, warps));
-    if (rows > most_rows) break;
-    for (unsigned cut_warps = largest_block - warps; cut_warps > 0; --cut_warps) {
-      const unsigned cut_rows = divided(needs.cut_rows, cut_warps);
-      if (cut_rows > most_rows) break;
-      const unsigned block = block_for(warps + cut_warps, needs.groups, largest_block);
-      const Shape shape{block, warps, cut_warps, rows, cut_rows, 1, 0};
-      const std::size_t busy =
-          access * shape.rows_inside() + cut_access * shape.rows_of_cut() + owner_access * (warps + cut_warps);
-      const std::size_t longest = std::max(row_time * rows, waiting + row_time * cut_rows);
-      const std::size_t cost = 4 * std::max(busy, longest) + busy + longest;
-      if (cost >= best_cost) continue;
-      best = shape;
-      best_cost = cost;
-    }
-  }
-  return best;
-}
-
-Shape shape_for(const Needs& needs, unsigned largest_block) {
-  Shape best = needs.cut_rows > 0 ? shape_for_cluster(needs, largest_block) : shape_for_block(needs, largest_block);
-  constexpr unsigned rows = rows_of_a_chunk;
-  for (unsigned chunks = divided(needs.rows + needs.cut_rows, rows * largest_block); best.warps == 0; ++chunks) {
-    const unsigned cut = divided(needs.cut_rows, rows * chunks);
-    if (divided(needs.rows, rows * chunks) + cut <= largest_block)
-      best = {largest_block, largest_block - cut, cut, rows, rows, chunks, 0};
-  }
-  best.masses_per_thread = std::max(1u, divided(needs.groups, best.block));
-  return best;
-}
-
-}  // namespace
-
 std::vector<std::uint32_t> indices_by_degree(const Outline& outline) {
   struct Degree {
     std::uint32_t cut = 0, inside = 0;
@@ -147,14 +54,14 @@ std::vector<std::uint32_t> indices_after(std::span<const Vec3> rest, std::uint32
 Arrangement::Arrangement(const Outline& outline)
     : groups(divided(outline.rest.size(), 32)), index_of(indices_by_degree(outline)) {}
 
-Arrangement::Arrangement(const Outline& outline, unsigned largest_block) : Arrangement(outline) {
+Arrangement::Arrangement(const Outline& outline, const Target& target) : Arrangement(outline) {
   const std::vector<std::uint32_t> all_open(outline.ends.size(), open);
   Draft all = draft(outline, {all_open, all_open});
-  const Shape best = shape_for(all.needs, largest_block);
+  const Shape best = shape_for(all.needs, target);
   fit(std::move(all), best);
 }
 
-std::vector<Arrangement> Arrangement::of_parts(std::span<const Outline* const> parts, unsigned largest_block) {
+std::vector<Arrangement> Arrangement::of_parts(std::span<const Outline* const> parts, const Target& target) {
   std::vector<Arrangement> arrangements;
   std::vector<Draft> drafts;
   Needs most;
@@ -166,12 +73,12 @@ std::vector<Arrangement> Arrangement::of_parts(std::span<const Outline* const> p
     most = {std::max(most.rows, needs.rows), std::max(most.cut_rows, needs.cut_rows),
             std::max(most.groups, needs.groups)};
   }
-  const Shape shape = shape_for(most, largest_block);
+  const Shape shape = shape_for(most, target);
   for (std::size_t i = 0; i < drafts.size(); ++i) arrangements[i].fit(std::move(drafts[i]), shape);
   return arrangements;
 }
 
-Arrangement::Arrangement(const Outline& outline, unsigned largest_block, const Arrangement& earlier,
+Arrangement::Arrangement(const Outline& outline, const Target& target, const Arrangement& earlier,
                          const Outline& before)
     : groups(divided(outline.rest.size(), 32)),
       index_of(indices_after(outline.rest, 32 * groups, earlier.index_of, before.rest)) {
@@ -199,7 +106,7 @@ Arrangement::Arrangement(const Outline& outline, unsigned largest_block, const A
     settled.row.push_back(slot / 32 - earlier.first_row[group]);
   }
   Draft all = draft(outline, settled);
-  const Shape best = shape_for(all.needs, largest_block);
+  const Shape best = shape_for(all.needs, target);
   fit(std::move(all), best);
 }
 

@@ -1,6 +1,6 @@
 // The arrangement of a body on the chip: which thread computes which spring, and when.
 //
-//   outline ─► choose_owners (ownership.hpp) ─► shape ─► choose_rows (row_order.hpp) ─► slots
+//   outline ─► choose_owners (ownership.hpp) ─► shape_for (shape.hpp) ─► choose_rows (row_order.hpp) ─► slots
 //
 // kernels/cuda/README.md explains the terms.
 #pragma once
@@ -11,34 +11,13 @@
 
 #include "cuda/layout/arrangement/outline.hpp"
 #include "cuda/layout/arrangement/row_order.hpp"
+#include "cuda/layout/arrangement/shape.hpp"
 
 namespace evodevo::cuda {
-
-/// What a block must have room for.
-struct Needs {
-  std::size_t rows = 0, cut_rows = 0;  ///< of springs inside, and of cut springs
-  std::uint32_t groups = 0;
-};
 
 /// The device index of each mass: masses are sorted by descending degree (number of springs), first that of cut
 /// springs, so that masses in neighbouring lanes have similar numbers of springs.
 std::vector<std::uint32_t> indices_by_degree(const Outline& outline);
-
-/// The sizes of a block for which a body is arranged.
-struct Shape {
-  unsigned block = 0;      ///< warps in the block
-  unsigned warps = 0;      ///< warps with springs inside
-  unsigned cut_warps = 0;  ///< the warps after them, with cut springs
-  unsigned rows = 0;       ///< rows in a chunk of warps with springs inside
-  unsigned cut_rows = 0;   ///< likewise, of warps with cut springs
-  unsigned chunks = 0;     ///< chunks of rows for each warp
-  unsigned masses_per_thread = 0;
-
-  friend auto operator<=>(const Shape&, const Shape&) = default;
-  std::size_t rows_inside() const { return std::size_t{chunks} * warps * rows; }
-  std::size_t rows_of_cut() const { return std::size_t{chunks} * cut_warps * cut_rows; }
-  std::size_t slots() const { return 32 * (rows_inside() + rows_of_cut()); }
-};
 
 /// The masses and springs of a body, or of a part of one, in the order of a thread block.
 ///
@@ -57,16 +36,16 @@ struct Arrangement {
     std::uint32_t other = 0;      ///< index of the mass at the other end; in an empty slot, an index beyond all groups
   };
 
-  /// Arranges a body, or a part of one, for a block of at most `largest_block` warps.
-  Arrangement(const Outline& outline, unsigned largest_block);
+  /// Arranges a body, or a part of one.
+  Arrangement(const Outline& outline, const Target& target);
 
   /// Arranges a body that has developed from one with the outline `before` and the arrangement `earlier`; both are in
   /// one part. If the remaining masses and springs are in the same order as before, most keep their indices, owners and
   /// rows, which saves most of the work. Any other body is arranged correctly as well.
-  Arrangement(const Outline& outline, unsigned largest_block, const Arrangement& earlier, const Outline& before);
+  Arrangement(const Outline& outline, const Target& target, const Arrangement& earlier, const Outline& before);
 
-  /// Arranges the parts of a body, for blocks of equal shape of at most `largest_block` warps.
-  static std::vector<Arrangement> of_parts(std::span<const Outline* const> parts, unsigned largest_block);
+  /// Arranges the parts of a body, for blocks of equal shape.
+  static std::vector<Arrangement> of_parts(std::span<const Outline* const> parts, const Target& target);
 
   /// Index 32 * groups is that of the first mass that no spring joins, to which empty slots refer. The indices of the
   /// halo begin 32 later.
