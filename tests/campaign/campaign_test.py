@@ -89,7 +89,7 @@ class Campaigns(unittest.TestCase):
         return (self.folder / "out" / "report.md").read_text()
 
     def fuzz(self):
-        return Fuzz(self.folder, OPERATORS, self.folder / "out")
+        return Fuzz(lambda: self.folder, OPERATORS, self.folder / "out")
 
     def target(self, name, text):
         program = self.folder / f"fuzz_{name}"
@@ -159,7 +159,7 @@ class Campaigns(unittest.TestCase):
 
     def test_a_folder_without_targets_is_refused(self):
         with self.assertRaisesRegex(Failure, f"{self.folder}: .*fuzz_targets"):
-            self.fuzz()
+            self.sit(self.fuzz())
 
 
 unittest.main()

@@ -50,7 +50,7 @@ def parts(program, folder):
     return [
         Bodies(hostile_bodies(program), "cpu"),
         Experiments(operators, Laws(program, folder.resolve() / "experiments"), folder),
-        Fuzz(built_targets(), operators, folder),
+        Fuzz(built_targets, operators, folder),
         Soak(program, folder),
         Storage(program, built / "lib" / "faults.so", folder),
     ]

@@ -27,16 +27,19 @@ class Fuzz:
 
     name = "fuzz"
 
-    def __init__(self, programs, operators, folder):
-        self._programs = sorted(programs.glob("fuzz_*"))
+    def __init__(self, built, operators, folder):
+        """`built`: builds the programs, and returns their folder; called when a sitting begins."""
+        self._built = built
         self._folder = folder.resolve()
         self._words = dictionary(operators)
-        if not self._programs:
-            raise Failure(f"{programs}: there is no program fuzz_TARGET; build the target fuzz_targets")
 
     def sitting(self, seconds, past):
-        for program in self._programs:
-            yield self._run(program, max(1, round(seconds / len(self._programs))))
+        folder = self._built()
+        programs = sorted(folder.glob("fuzz_*"))
+        if not programs:
+            raise Failure(f"{folder}: there is no program fuzz_TARGET; build the target fuzz_targets")
+        for program in programs:
+            yield self._run(program, max(1, round(seconds / len(programs))))
 
     def _run(self, program, seconds):
         target = program.name.removeprefix("fuzz_")
