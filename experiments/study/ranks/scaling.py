@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Simulates how fast a run gets with more and more GPUs, one rank for each, and draws the rate over the number of GPUs.
+"""Simulates how fast a run gets with more and more GPUs, one rank for each, and draws the rate over the number of GPUs,
+with what was measured (experiments/results/ranks/measured.csv).
 
   python3 experiments/study/ranks/scaling.py runs/ranks
 
@@ -25,6 +26,7 @@ import heapq
 import pathlib
 import random
 
+MEASURED = pathlib.Path(__file__).resolve().parents[2] / "results/ranks/measured.csv"
 MULTIPROCESSORS = 132
 SPRING_EVALUATIONS = {"evo-devo.toml": 1.33e4 * 60_000, "paper.toml": 1.33e4 * 220_000}
 RATE = 3.3e11
@@ -111,6 +113,17 @@ def rows_of(name, gpu_counts, robots_for):
                "robots_per_second": f"{robots / seconds:.4g}", "of_ideal": f"{ideal / seconds:.3f}"}
 
 
+def read_measured():
+    """Returns the numbers of GPUs and robots per second that were measured, by how the run used the GPUs."""
+    points = {}
+    with MEASURED.open(newline="") as stream:
+        for row in csv.DictReader(stream):
+            gpus, rates = points.setdefault(f"measured: {row['used_by']}, {row['robots']}", ([], []))
+            gpus.append(int(row["gpus"]))
+            rates.append(float(row["robots_per_second"]))
+    return points
+
+
 def draw(rows, file):
     import matplotlib
 
@@ -123,6 +136,8 @@ def draw(rows, file):
         gpus = [row["gpus"] for row in of_case]
         rates.loglog(gpus, [float(row["robots_per_second"]) for row in of_case], "o-", markersize=3, label=case)
         parts.semilogx(gpus, [float(row["of_ideal"]) for row in of_case], "o-", markersize=3, label=case)
+    for (label, points), marker in zip(read_measured().items(), "x+12*v^s", strict=False):
+        rates.loglog(*points, marker, color="black", markersize=5, label=label)
     rates.set_ylabel("robots per second")
     parts.set_ylabel("part of the rate of so many GPUs (1)")
     parts.set_ylim(0, 1)
