@@ -4,7 +4,7 @@ evolution goes on when it moves to another scene, how much bodies differ, and wh
 
   tools/compare experiments/study/development/evo.toml experiments/study/development/evo-devo.toml --seeds 101..150 \
     --out runs/study
-  EVODEVO_PROGRAM=build/cpu/bin/evodevo python3 experiments/study/development/outcomes.py runs/study
+  EVODEVO_PROGRAM=build/cuda/bin/evodevo python3 experiments/study/development/outcomes.py runs/study
 
 The best robot of each run is born again, LIVES times with other random numbers, in the scenarios of scenarios.txt. The
 last population of each run goes on to evolve on a slope. The bodies of BODIES robots of each last population are
@@ -136,18 +136,18 @@ def distances_of_lives(out, arm, run):
 
 def born_again(_, out, arm, run):
     """Returns how far the best robot of a run gets at home in other lives, in which development draws other random
-    numbers; None if nothing has been measured and the run is gone. The same holds for the other outcomes."""
-    lives = distances_of_lives(out, arm, run)
-    if not lives:
-        return None
+    numbers, and in how many of them and of those of its verification, which also begin in slightly other places, it
+    keeps ENOUGH; None if nothing has been measured and the run is gone. The same holds for the other outcomes."""
     shown = rows.read(arm.row(run))
     distance = shown["best"]["objectives"][shown["objectives"][0]["name"]]
-    again = [life["home"] for life in lives]
-    kept = {"lives that kept half, %": [each >= ENOUGH * distance for each in again]}
+    found = {}
+    if lives := distances_of_lives(out, arm, run):
+        again = [life["home"] for life in lives]
+        found["in the run"], found["median life"] = distance, statistics.median(again)
+        found["lives that kept half, %"] = 100 * statistics.fmean(each >= ENOUGH * distance for each in again)
     if perturbed := history(shown, objective_of(shown["objectives"][0])).reborn:
-        kept["of lives with other places at birth, %"] = perturbed
-    shares = {what: 100 * statistics.fmean(lives) for what, lives in kept.items()}
-    return {"in the run": distance, "median life": statistics.median(again), **shares}
+        found["of lives with other places at birth, %"] = 100 * statistics.fmean(perturbed)
+    return found or None
 
 
 def in_scenarios(_, out, arm, run):
@@ -254,9 +254,8 @@ def report(title, of_arms):
     columns = list(dict.fromkeys(column for runs in of_arms.values() for run in runs.values() for column in run))
 
     def cell(runs, column):
-        if not any(column in run for run in runs.values()):
-            return "-"
-        return median_with_interval([run.get(column, -math.inf) for run in runs.values()])
+        numbers = [run[column] for run in runs.values() if column in run]
+        return median_with_interval(numbers) if numbers else "-"
 
     lines = [[f"`{arm}`", str(len(runs)), *(cell(runs, column) for column in columns)] for arm, runs in of_arms.items()]
     return f"## {title}\n\n{table(['', 'runs', *columns], lines)}"
