@@ -1,6 +1,6 @@
 // The report's page, in a browser.
 import assert from "node:assert/strict";
-import { readFileSync, statSync, writeFileSync } from "node:fs";
+import { cpSync, readFileSync, statSync, writeFileSync } from "node:fs";
 import { pathToFileURL } from "node:url";
 import { after, before, test } from "node:test";
 import {
@@ -390,6 +390,32 @@ test("where nothing ended with a fitness, charts say so", async () => {
   assert.deepEqual(barren.complaints, []);
   await barren.close();
 });
+
+for (const [what, low, high] of [
+  ["are equal", 1, 1],
+  ["differ by a rounding error", 1 - 2 ** -53, 1],
+  ["are huge", 1e300, 1.5e300],
+  ["are tiny", 1e-300, 2e-300],
+])
+  test(`charts have some ticks, and can be saved, where scores ${what}`, async () => {
+    const run = scratch.path(what);
+    cpSync(scratch.run, run, { recursive: true });
+    const value = (number) => `CASE WHEN ${number} % 2 = 0 THEN ${low} ELSE ${high} END`;
+    archived(run, `UPDATE scores SET value = ${value("individual")}`);
+    archived(run, `UPDATE generations SET best = ${high}, median = ${value("generation")}`);
+    evodevo("report", run, "--individual", "0", "--out", scratch.path("narrow.html"));
+    const narrow = await opened(browser, scratch.path("narrow.html"));
+    const ticks = await inPage(narrow, ({ charts }) =>
+      Object.values(charts.byName).flatMap(({ plot, saving }) => {
+        plot.setScale("x", { min: 1, max: 1 + 2 ** -52 }); // as by zooming in
+        saving.querySelector("button").click();
+        return plot.axes.map(({ _splits }) => _splits?.length ?? 0);
+      }),
+    );
+    assert.ok(Math.max(...ticks) < 50, ticks.join());
+    assert.deepEqual(narrow.complaints, []);
+    await narrow.close();
+  });
 
 test("it is no larger than it has to be", () => {
   assert.ok(statSync(report).size < 3_000_000);

@@ -24,6 +24,30 @@ export function joined(series) {
 export const shown = (_, value, series, index) => (index === null ? "" : short(value));
 const counts = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1e3, 2e3, 5e3, 1e4, 2e4, 5e4, 1e5, 2e5, 5e5, 1e6]; // steps of ticks
 
+/** The least part of its larger bound that an axis shows. If it showed less, its ticks would have the same labels, and
+ *  far less could not be told apart by rounding, so that uPlot would draw ticks without end. */
+const narrowest = 1e-3;
+
+/** Returns the range of a scale, which is wide enough for ticks. */
+const wideEnough = (range) => (plot, least, most) => {
+  const [low, high] = range(plot, least, most);
+  const missing = (narrowest * Math.max(Math.abs(low), Math.abs(high)) || 1) - (high - low);
+  return missing > 0 ? [low - missing / 2, high + missing / 2] : [low, high];
+};
+const ranges = {
+  x: (_, low, high) => [low, high],
+  y: (_, low, high) => (low === null ? [low, high] : uPlot.rangeNum(low, high, 0.1, true)),
+};
+
+/** Returns the scales x and y with the given options. */
+const scalesWith = (given = {}) =>
+  Object.fromEntries(
+    Object.entries(ranges).map(([name, usual]) => {
+      const { range = usual, ...others } = given[name] ?? {};
+      return [name, { time: false, range: Array.isArray(range) ? range : wideEnough(range), ...others }];
+    }),
+  );
+
 /** Returns a series with steps at the end of each interval (1), so that a value holds until the next, or at its
  *  beginning (-1). */
 export const stepped = (series, steps = 1) => ({ ...series, steps, paths: uPlot.paths.stepped({ align: steps }) });
@@ -95,7 +119,7 @@ export class Chart {
   draw() {
     this.plot?.destroy();
     this.plot = undefined;
-    const { title, data, series, x, y, wholeX, options, points } = this.describe();
+    const { title, data, series, x, y, wholeX, options: { scales, ...options } = {}, points } = this.describe();
     this.caption.textContent = title ?? this.title;
     this.data = data;
     const isEmpty = data.slice(1).every((column) => column.every((value) => value === null));
@@ -117,7 +141,7 @@ export class Chart {
       {
         width: this.box.clientWidth || 400,
         height,
-        scales: { x: { time: false } },
+        scales: scalesWith(scales),
         axes: [{ ...axis(x, 36), ...(wholeX ? { incrs: counts } : {}) }, axis(y, 52)],
         legend: { live: true },
         cursor: { drag: { x: true, y: false } },

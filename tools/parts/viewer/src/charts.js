@@ -130,7 +130,7 @@ function groups(run, { name, groups: listedGroups, others }, title) {
       x: "generation",
       wholeX: true,
       y: "individuals",
-      options: { scales: { x: { time: false }, y: { range: [0, Math.max(...tops)] } } },
+      options: { scales: { y: { range: [0, Math.max(...tops)] } } },
     };
   });
 }
@@ -165,7 +165,7 @@ function living(runs, open) {
       series: columns.map(([, series]) => series),
       x: axisText(x),
       wholeX: x === age,
-      options: { scales: { x: { time: false, range: padded } } },
+      options: { scales: { x: { range: padded } } },
       y: axisText(y),
     };
   };
@@ -243,7 +243,7 @@ function statuses(run, title) {
       x: "generation",
       wholeX: true,
       y: "% of evaluations",
-      options: { scales: { x: { time: false }, y: { range: [0, 100] } } },
+      options: { scales: { y: { range: [0, 100] } } },
     };
   });
 }

@@ -20,7 +20,7 @@ export function chartSvg(plot, title, data) {
   const text = (x, y, content, attributes = {}) =>
     node("text", { x: round(x), y: round(y), fill: soft, "font-size": 12, ...attributes }, content);
   const [across, up] = plot.axes;
-  const ticks = (axis) => axis._splits.map((split, i) => [split, axis._values[i]]).filter(([, value]) => value);
+  const ticks = (axis) => (axis._splits ?? []).map((split, i) => [split, axis._values[i]]).filter(([, value]) => value);
   const inside = node("g", { transform: `translate(${round(x0)} ${round(y0)})` });
   inside.append(
     ...ticks(up).flatMap(([split, value]) => [
