@@ -1,8 +1,10 @@
 """Tests the script that measures the outcomes of experiments/study/development, with short runs of small robots."""
 
+import csv
 import pathlib
 import re
 import shutil
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -38,9 +40,15 @@ class Outcomes(unittest.TestCase):
         self.assertGreater(len(scenarios), 5)
         self.assertIn(f"|  | runs | {' | '.join(scenarios)} |", scenes)
         self.assertIn("after 5 evaluations | after 10 evaluations | after 20 evaluations", slope)
-        ((in_run, life, kept), _) = self.cells(reborn)  # nothing is drawn at random without development
+        # nothing is drawn at random without development, and verification lets only robots that develop be born again
+        ((in_run, life, kept, elsewhere), (_, _, _, developing)) = self.cells(reborn)
         self.assertAlmostEqual(life, in_run)
-        self.assertEqual(kept, 100)
+        self.assertEqual((kept, elsewhere), (100, None))
+        self.assertTrue(0 <= developing <= 100, developing)
+        with (self.folder / "out" / "outcomes" / "outcomes.csv").open(newline="") as stream:
+            numbers = {(row["arm"], row["run"], row["quantity"]): float(row["value"]) for row in csv.DictReader(stream)}
+        of_runs = [numbers["plain", f"seed-{seed}", "in the run"] for seed in (101, 102)]
+        self.assertAlmostEqual(statistics.median(of_runs), in_run, delta=0.01 * abs(in_run))
         for text in (scenes, slope):
             plain, developing = self.cells(text)
             self.assertNotEqual(plain, developing)
@@ -64,9 +72,10 @@ class Outcomes(unittest.TestCase):
         self.assertEqual(re.findall(r"(?m)^\| `plain` \| (\d) \|", rest.stdout), ["1", "1", "1", "1", "2"])
 
     def cells(self, text):
-        """Returns the medians in the lines of both arms."""
+        """Returns the medians in the lines of both arms, or None where there are none."""
         lines = dict(re.findall(r"(?m)^\| `(plain|developing)` \| 2 \| (.*) \|$", text))
-        return [[float(cell.split()[0]) for cell in lines[arm].split(" | ")] for arm in ("plain", "developing")]
+        cells = [[cell.split()[0] for cell in lines[arm].split(" | ")] for arm in ("plain", "developing")]
+        return [[None if cell == "-" else float(cell) for cell in of_arm] for of_arm in cells]
 
     def test_a_folder_without_runs_is_refused(self):
         done = self.measure()
