@@ -42,8 +42,8 @@ class Resident {
   /// room for its springs (in double precision, for its masses), or for the largest. Returns nothing if not even its
   /// masses fit; that does not depend on what is recorded or sampled, and neither do the steps of the table. Only the
   /// rounding of work and, in double precision, of samples depends on the arrangement. So a body whose work is recorded
-  /// is arranged without regard to its earlier life, and in both cases a body gets no more blocks than necessary. A
-  /// range of samples has `spans_per_range` check spans.
+  /// is arranged without regard to its earlier life, and in both cases to the number of bodies: it gets no more blocks
+  /// than necessary. A range of samples has `spans_per_range` check spans.
   static std::optional<Resident> arrange(const Task& task, const Features& features, const Room& room,
                                          std::uint64_t spans_per_range = 1);
 

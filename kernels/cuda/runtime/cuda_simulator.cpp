@@ -66,7 +66,7 @@ class DeviceSimulator final : public CudaSimulator {
                         cuda::spans_per_range(live),
                         largest_cluster(),
                         clusters_.blocks_for(bodies, *common_.kernels),
-                        bodies_at_once(bodies)};
+                        cuda::divided(bodies, device_.multiprocessors)};
     std::get<cuda::DeviceResources::Batches<T>>(resources_->coalescers)
         .run(cuda::Kind(run), plan(live, run), [&](std::span<cuda::Plan<T>> batch) { simulate(batch, run); });
   }
@@ -96,11 +96,6 @@ class DeviceSimulator final : public CudaSimulator {
   }
 
  private:
-  /// The number of bodies for each multiprocessor.
-  unsigned bodies_at_once(std::size_t bodies) const {
-    return static_cast<unsigned>((bodies + device_.multiprocessors - 1) / device_.multiprocessors);
-  }
-
   /// Clears the results, and returns the tasks that need the device. Tasks without masses or steps end here; only their
   /// time advances.
   std::vector<Task*> begin(std::span<Task> tasks, Recording recording) const {

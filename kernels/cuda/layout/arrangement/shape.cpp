@@ -32,9 +32,8 @@ std::size_t blocks_at_once(unsigned block, std::size_t rows, std::uint32_t group
 }
 
 /// Cycles for a step of a body in a block of this shape, if a multiprocessor has as many of them as it has room for.
-/// While one block moves its masses and waits for its warps, others compute springs. The numbers of cycles in this
-/// function and the next were fitted to measurements of bodies of 64 to 1,000 masses in blocks of different shapes, on
-/// an H200 and an H100.
+/// While one block moves its masses and waits for its warps, others compute springs. The numbers of cycles were fitted
+/// to measurements of bodies of 64 to 1,000 masses in blocks of different shapes, on an H200.
 double full_cost(const Shape& shape, std::size_t room) {
   constexpr double moving = 1000;   // in which a block does not access shared memory for springs
   constexpr double row_time = 100;  // from a warp's row to its next, if no other block is there
@@ -47,7 +46,9 @@ double full_cost(const Shape& shape, std::size_t room) {
   return busy + (alone - busy) / static_cast<double>(room);
 }
 
-/// Cycles from one step of a body to the next, if it has a multiprocessor for itself.
+/// Cycles from one step of a body to the next, if it has a multiprocessor for itself. The numbers of cycles, here and
+/// in cost_of(), were fitted to measurements of one to eight bodies of 64 to 250 masses on each multiprocessor of an
+/// H100.
 double cost_alone(const Shape& shape, std::size_t entries) {
   constexpr double moving = 780, of_warp = 16, row_time = 75, filling = 27;
   return std::max(static_cast<double>(access * shape.rows_inside()), row_time * shape.rows) + moving +

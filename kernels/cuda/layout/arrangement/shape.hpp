@@ -14,8 +14,10 @@ constexpr unsigned divided(std::size_t a, std::size_t b) { return static_cast<un
 
 /// What a body is arranged for.
 struct Target {
+  /// Twice the bodies for each multiprocessor up to which the numbers in shape.cpp were fitted.
   static constexpr unsigned many = 16;
 
+  /// A number of warps alone stands for a target with many bodies.
   Target(unsigned largest_block_, unsigned at_once_ = many, std::size_t entries_ = 0)
       : largest_block(largest_block_), at_once(at_once_), entries(entries_) {}
   friend bool operator==(const Target&, const Target&) = default;

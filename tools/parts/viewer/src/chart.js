@@ -24,8 +24,8 @@ export function joined(series) {
 export const shown = (_, value, series, index) => (index === null ? "" : short(value));
 const counts = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1e3, 2e3, 5e3, 1e4, 2e4, 5e4, 1e5, 2e5, 5e5, 1e6]; // steps of ticks
 
-/** The least part of its larger bound that an axis shows. If it showed less, its ticks would have the same labels, and
- *  far less could not be told apart by rounding, so that uPlot would draw ticks without end. */
+/** The least width of an axis, as a part of its larger bound. The ticks of a narrower one would have equal labels. Those
+ *  of a far narrower one would be equal after rounding, and uPlot would never come to the last. */
 const narrowest = 1e-3;
 
 /** Returns the range of a scale, which is wide enough for ticks. */
