@@ -4,9 +4,9 @@ with what was measured (experiments/results/ranks/measured.csv).
 
   python3 experiments/study/ranks/scaling.py runs/ranks
 
-It assumes hosts whose cores feed their GPUs; experiments/results/README.md has what two GPUs did in one that does not.
-The simulation deals out jobs as framework/cluster/farm.cpp does, and takes its times from
-measurements of one GPU and its host:
+It assumes hosts whose cores feed their GPUs, and ranks that use a GPU as well as one process does;
+experiments/results/README.md has what two GPUs did in hosts and ranks that do not. The simulation deals out jobs as
+framework/cluster/farm.cpp does, and takes its times from measurements of one GPU and its host:
 
 - ROBOT_SECONDS: the life of a robot on an idle multiprocessor of an NVIDIA H200: 1.3e4 springs, 60,000 steps in the life
   of experiments/evo-devo.toml, 220,000 in that of experiments/paper.toml, and 3.3e11 spring evaluations per second of
@@ -139,6 +139,7 @@ def draw(rows, file):
     for (label, points), marker in zip(read_measured().items(), "x+12*v^s", strict=False):
         rates.loglog(*points, marker, color="black", markersize=5, label=label)
     rates.set_ylabel("robots per second")
+    rates.set_ylim(bottom=3)  # room for the legend
     parts.set_ylabel("part of the rate of so many GPUs (1)")
     parts.set_ylim(0, 1)
     rates.legend(fontsize=7)
