@@ -37,9 +37,11 @@ std::string name_of(const OperatorUse& use) { return use.kind + " operator \"" +
 
 }  // namespace
 
-std::size_t job_size(std::size_t left, std::size_t jobs, std::size_t fast) {
-  const std::size_t least = std::max<std::size_t>(1, fast / 4);
-  return std::min(left, std::clamp(left / (2 * std::max<std::size_t>(1, jobs)), least, std::max(least, fast)));
+std::size_t job_size(std::size_t left, std::size_t jobs, std::size_t share, const message::Hello& rank) {
+  const std::size_t small_jobs = (rank.jobs + 3) / 4;
+  const std::size_t of_share = std::max(share / small_jobs, std::min(share, smallest_cohort));
+  const std::size_t least = std::clamp<std::size_t>(of_share, 1, rank.lives);
+  return std::min(left, std::clamp(left / (2 * jobs), least, 4 * rank.lives));
 }
 
 void end_run(Channel& channel) { tell_all(channel, message::packed(message::End{channel.given_up()})); }
@@ -190,8 +192,8 @@ void Farm::deal(Batch& batch) {
   while (const std::optional<int> free = free_rank(batch)) {
     const Rank& rank = ranks_[static_cast<std::size_t>(*free)];
     std::deque<std::size_t>& left = batch.left[batch.line(rank.provenance)];
-    const auto count =
-        static_cast<std::ptrdiff_t>(job_size(left.size(), jobs_at_once(batch, rank.provenance), rank.hello.lives));
+    const auto count = static_cast<std::ptrdiff_t>(
+        job_size(left.size(), jobs_at_once(batch, rank.provenance), share_of_rank(batch), rank.hello));
     std::vector<std::size_t> items(left.begin(), left.begin() + count);
     left.erase(left.begin(), left.begin() + count);
     assign(*free, std::move(items), batch);
@@ -204,6 +206,12 @@ std::size_t Farm::jobs_at_once(const Batch& batch, std::uint32_t provenance) con
   for (const Rank& rank : ranks_)
     if (!rank.lost && batch.line(rank.provenance) == batch.line(provenance)) jobs += rank.hello.jobs;
   return jobs;
+}
+
+/// Returns the number of items for each rank if all did the same number, rounded up.
+std::size_t Farm::share_of_rank(const Batch& batch) const {
+  const auto ranks = static_cast<std::size_t>(std::ranges::count(ranks_, false, &Rank::lost));
+  return (batch.items.size() + ranks - 1) / ranks;
 }
 
 /// Throws if there are items that no rank may do, because those that might are lost.

@@ -21,10 +21,11 @@ struct Share {
   bool lost = false;        ///< whether it has fallen silent
 };
 
-/// Returns the number of items in the next job for a rank: what it is fast with, and less towards the end, so that all
-/// ranks end at about the same time. `left` is the number of items without a job, `jobs` the number of jobs that all
-/// ranks do at the same time, and `fast` is Hello::lives. At least 1 if any is left.
-std::size_t job_size(std::size_t left, std::size_t jobs, std::size_t fast);
+/// Returns the number of items in the next job for a rank: less towards the end, so that all ranks end at about the
+/// same time, but with so many that it is fast, if there are enough. `left` is the number of items without a job,
+/// `jobs` the number of jobs that all ranks do at the same time, and `share` the number of items for each rank if all
+/// did the same number. A quarter of the jobs that a rank does at once may be small. At least 1 if any is left.
+std::size_t job_size(std::size_t left, std::size_t jobs, std::size_t share, const message::Hello& rank);
 
 /// Tells all other ranks that there is no more work for them. They leave the channel when rank 0 does.
 void end_run(Channel& channel);
@@ -105,6 +106,7 @@ class Farm final : public Evaluator {
   void deal_to_keepers(Batch& batch);
   std::optional<int> free_rank(const Batch& batch) const;
   std::size_t jobs_at_once(const Batch& batch, std::uint32_t provenance) const;
+  std::size_t share_of_rank(const Batch& batch) const;
   void check_served(const Batch& batch) const;
   void assign(int rank, std::vector<std::size_t> items, const Batch& batch);
   bool take_messages(Batch& batch);

@@ -62,7 +62,7 @@ struct Hello {
   Layout layout;                       ///< of the genomes that its operators read
   std::vector<std::string> scores;     ///< what its operators score
   std::uint64_t jobs = 1;              ///< number of jobs that it does at the same time
-  std::uint64_t lives = 1;             ///< number of lives in a job with which it is fast
+  std::uint64_t lives = 1;             ///< number of lives in a job that keeps its part of the device busy
   std::uint64_t verified_at_once = 1;  ///< Evaluator::verified_at_once()
 
   static constexpr auto kind = Kind::hello;

@@ -33,7 +33,7 @@ message::Hello hello_of(const Experiment& experiment, Simulator& simulator) {
   const std::optional<DeviceUse> gpus = simulator.device_use();
   // a second job of a processor fills the time in which few lives of the first are left
   hello.jobs = gpus ? static_cast<std::uint64_t>(simulator.concurrency()) : 2;
-  hello.lives = gpus ? lives_at_once(simulator) / gpus->devices : 4 * lives_at_once(simulator);
+  hello.lives = gpus ? large_cohort : lives_at_once(simulator);
   return hello;
 }
 
@@ -85,7 +85,7 @@ std::vector<message::Outcome> Worker::outcomes(const message::Job& job) {
 }
 
 std::vector<Evaluated> Worker::evaluated(std::span<const Newborn> newborns, std::uint64_t job) {
-  return evaluator_.evaluate(newborns, [&](double part) {
+  return evaluator_.evaluate_cohort(newborns, [&](double part) {
     const std::lock_guard lock(mutex_);
     progress_[job] = part * static_cast<double>(newborns.size());
   });

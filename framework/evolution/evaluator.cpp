@@ -16,8 +16,16 @@ std::size_t lives_at_once(Simulator& simulator) {
 std::size_t verified_at_once(Simulator& simulator) { return std::max<std::size_t>(1, lives_at_once(simulator) / 2); }
 
 std::vector<Evaluated> LocalEvaluator::evaluate(std::span<const Newborn> newborns, const Progress& progress) {
+  return without_records(newborns, evaluation_.evaluate(newborns, progress));
+}
+
+std::vector<Evaluated> LocalEvaluator::evaluate_cohort(std::span<const Newborn> newborns, const Progress& progress) {
+  return without_records(newborns, evaluation_.evaluate_in(1, newborns, progress));
+}
+
+std::vector<Evaluated> LocalEvaluator::without_records(std::span<const Newborn> newborns, std::vector<Result> results) {
   std::vector<Evaluated> evaluated;
-  for (Result& result : evaluation_.evaluate(newborns, progress)) evaluated.push_back({std::move(result)});
+  for (Result& result : results) evaluated.push_back({std::move(result)});
   const std::lock_guard lock(mutex_);
   for (std::size_t i = 0; i < newborns.size(); ++i)
     kept_[newborns[i].id] = std::exchange(evaluated[i].result.record, LifeRecord());

@@ -68,6 +68,8 @@ class LocalEvaluator final : public Evaluator {
 
   std::vector<Provenance> provenances() const override { return {this_provenance(experiment_, simulator_.device())}; }
   std::vector<Evaluated> evaluate(std::span<const Newborn> newborns, const Progress& progress) override;
+  /// The same as one cohort, for callers that evaluate several cohorts at the same time.
+  std::vector<Evaluated> evaluate_cohort(std::span<const Newborn> newborns, const Progress& progress);
   std::vector<LifeRecord> records(std::span<const Newborn> newborns,
                                   std::span<const std::uint32_t> provenances) override;
   void forget_records() override;
@@ -78,6 +80,8 @@ class LocalEvaluator final : public Evaluator {
   PhaseTimes phase_times() const override { return evaluation_.phase_times(); }
 
  private:
+  /// Keeps the records of the lives of these newborns, and returns the rest of the results.
+  std::vector<Evaluated> without_records(std::span<const Newborn> newborns, std::vector<Result> results);
   const ExactSimulators& exact();
 
   const Experiment& experiment_;

@@ -11,13 +11,11 @@
 namespace evodevo {
 namespace {
 
-/// The number of cohorts for so many newborns, of at most `most` that a simulator takes at once. While some cohorts are
-/// simulated, others develop. A quarter of them may be small, because a small population leaves a device partly idle
-/// anyway; if there are more, each should be large enough to keep it busy. With fewer bodies, a cohort would not repay
-/// the overhead of a batch.
+/// The number of cohorts for so many newborns, of at most `most` that a simulator takes at once. A quarter of them may
+/// be small, because a small population leaves a device partly idle anyway; if there are more, each should be large.
 std::size_t cohorts_for(std::size_t newborns, std::size_t most) {
-  constexpr std::size_t smallest = 12, large = 64;
-  return std::clamp<std::size_t>(std::max(std::min(newborns / smallest, most / 4), newborns / large), 1, most);
+  return std::clamp<std::size_t>(std::max(std::min(newborns / smallest_cohort, most / 4), newborns / large_cohort), 1,
+                                 most);
 }
 
 }  // namespace
@@ -35,8 +33,12 @@ Evaluation::Evaluation(const Experiment& experiment, Simulator& simulator, const
       developing_scenarios_(scenarios_that_develop(experiment)) {}
 
 std::vector<Result> Evaluation::evaluate(std::span<const Newborn> newborns, const Progress& progress) const {
-  const std::size_t cohorts =
-      cohorts_for(newborns.size(), static_cast<std::size_t>(simulation.simulator().concurrency()));
+  const auto most = static_cast<std::size_t>(simulation.simulator().concurrency());
+  return evaluate_in(cohorts_for(newborns.size(), most), newborns, progress);
+}
+
+std::vector<Result> Evaluation::evaluate_in(std::size_t cohorts, std::span<const Newborn> newborns,
+                                            const Progress& progress) const {
   const auto begin = [&](std::size_t cohort) { return cohort * newborns.size() / cohorts; };
   std::vector<Result> results(newborns.size());
   std::vector<std::shared_ptr<const void>> announced;  // of each cohort until it has ended

@@ -18,14 +18,19 @@ struct PhaseTimes {
   double decode = 0, simulate = 0, develop = 0;
 };
 
+/// A cohort with fewer newborns would not repay the overhead of a batch of the simulator.
+inline constexpr std::size_t smallest_cohort = 12;
+/// A cohort with so many newborns does its part to keep a GPU busy.
+inline constexpr std::size_t large_cohort = 64;
+
 /// The stages of a life. evaluate() sends each newborn through all of them, one after the other:
 ///
 ///   newborns -> birth -> development -> measurement -> results
 ///                  \_______ all three use _______/
 ///                            simulation
 ///
-/// Newborns also develop in the scenarios that ask for it, in lives of their own. A large batch is divided into as many
-/// cohorts as are needed to keep the simulator busy. Experiment and simulator must outlive this object.
+/// Newborns also develop in the scenarios that ask for it, in lives of their own. A batch is divided into cohorts:
+/// while some are simulated, others develop. Experiment and simulator must outlive this object.
 class Evaluation {
  public:
   Evaluation(const Experiment& experiment, Simulator& simulator);
@@ -36,6 +41,9 @@ class Evaluation {
   /// Returns the results in the order of the newborns. The result of a newborn does not depend on the others in the
   /// batch. Calls `progress` with the fraction of the simulation that is done, 0 to 1, from one thread at a time.
   std::vector<Result> evaluate(std::span<const Newborn> newborns, const Progress& progress) const;
+  /// The same in so many cohorts, 1 or more, for callers that evaluate several batches at the same time.
+  std::vector<Result> evaluate_in(std::size_t cohorts, std::span<const Newborn> newborns,
+                                  const Progress& progress) const;
 
   /// Lets lives develop until they have matured, and lives of the same newborns in the scenarios that develop. The
   /// spring evaluations of all of them count in the results of `born`. Calls `progress` as DevelopmentLoop::run() does.

@@ -409,13 +409,24 @@ TEST(Messages, AreThoseOfTheirProtocol) {
          "test says here";
 }
 
-TEST(JobSize, ShrinksTowardsTheEndAndIsNeverNothing) {
-  EXPECT_EQ(job_size(10'000, 32, 100), 100u);
-  EXPECT_EQ(job_size(3'200, 32, 100), 50u);
-  EXPECT_EQ(job_size(100, 32, 100), 25u) << "fewer would leave a GPU idle";
-  EXPECT_EQ(job_size(3, 32, 100), 3u);
-  EXPECT_EQ(job_size(1, 1, 1), 1u);
-  EXPECT_EQ(job_size(0, 4, 8), 0u);
+TEST(JobSize, ShrinksTowardsTheEnd) {
+  const message::Hello gpu{.jobs = 16, .lives = 64};
+  EXPECT_EQ(job_size(100'000, 32, 50'000, gpu), 256u);
+  EXPECT_EQ(job_size(6'400, 32, 50'000, gpu), 100u);
+  EXPECT_EQ(job_size(640, 32, 50'000, gpu), 64u) << "fewer would leave a GPU idle";
+  EXPECT_EQ(job_size(3, 32, 50'000, gpu), 3u);
+  EXPECT_EQ(job_size(0, 32, 50'000, gpu), 0u);
+}
+
+TEST(JobSize, GivesEachRankSomeOfASmallBatch) {
+  const message::Hello gpu{.jobs = 16, .lives = 64}, cpu{.jobs = 2, .lives = 8};
+  EXPECT_EQ(job_size(200, 64, 50, gpu), 12u) << "a fourth of its share for each of four jobs";
+  EXPECT_EQ(job_size(80, 64, 20, gpu), 12u) << "fewer would not repay a batch";
+  EXPECT_EQ(job_size(31, 64, 8, gpu), 8u);
+  EXPECT_EQ(job_size(1'000, 8, 250, cpu), 32u);
+  EXPECT_EQ(job_size(31, 8, 8, cpu), 8u) << "one for each thread";
+  EXPECT_EQ(job_size(7, 8, 2, cpu), 2u);
+  EXPECT_EQ(job_size(1, 2, 1, {}), 1u);
 }
 
 TEST(ShareOf, DividesEquallyOrShares) {
