@@ -68,6 +68,9 @@ TEST(Clusters, ComputedMaterials) {
   Stepping computed;
   computed.materials = Materials::computed;
   expect_same_bits(walking_scene(), computed, random_body(1000, 20, 5), {28, 150});
+  Body damped = random_body(500, 20, 6);
+  for (Material& material : damped.materials) material.damping = 0.05;
+  expect_same_bits(walking_scene(), computed, damped, {28, 150});
 }
 
 TEST(Clusters, SamplesAndEnergiesDoNotDependOnTheNumberOfBlocks) {

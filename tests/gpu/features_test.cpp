@@ -266,12 +266,6 @@ const std::vector<Form> forms{
 
 class FeatureCode : public testing::TestWithParam<Form> {
  protected:
-  /// Bodies with dashpots have no codes of their materials.
-  static bool has_codes() { return GetParam().materials == Materials::computed; }
-  static Features possible(Features features) {
-    features.dashpots = features.dashpots && !has_codes();
-    return features;
-  }
   Operations code(const Sources& sources, const Features& features) const {
     return operations(compile(sources.all(), GetParam().source, GetParam().definitions(features), "sm_90"));
   }
@@ -279,16 +273,15 @@ class FeatureCode : public testing::TestWithParam<Form> {
 
 TEST_P(FeatureCode, IsNotThereWhereTheFeatureIsOff) {
   const auto count = [](const Operations& operations) { return static_cast<int>(operations.size()); };
-  const Operations all = code({}, possible(every_feature()));
+  const Operations all = code({}, every_feature());
   std::printf("%s: %d instructions with every feature\n", GetParam().name, count(all));
   for (const Subject& subject : subjects) {
-    if (has_codes() && subject.on == &Features::dashpots) continue;
     Sources sources;
     sources.remove(subject);
-    const Operations off = code({}, possible(without(subject)));
+    const Operations off = code({}, without(subject));
     std::printf("  without %-18s %5d fewer\n", subject.name, count(all) - count(off));
     EXPECT_FALSE(off == all) << subject.name << " is not compiled at all";
-    EXPECT_TRUE(off == code(sources, possible(every_feature()))) << subject.name << " leaves something where it is off";
+    EXPECT_TRUE(off == code(sources, every_feature())) << subject.name << " leaves something where it is off";
   }
 }
 
@@ -303,7 +296,7 @@ TEST_P(FeatureCode, IsNotThereWhereAllAreOff) {
       sources.remove(subject);
   const Operations bare = code({}, {});
   std::printf("%s: %zu instructions without any\n", GetParam().name, bare.size());
-  EXPECT_TRUE(bare == code(sources, possible(every_feature())));
+  EXPECT_TRUE(bare == code(sources, every_feature()));
 }
 
 INSTANTIATE_TEST_SUITE_P(Cuda, FeatureCode, testing::ValuesIn(forms), [](const auto& test) {

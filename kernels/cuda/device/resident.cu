@@ -99,12 +99,9 @@ __device__ __forceinline__ void load(const Body& body, Movers& movers) {
     if constexpr (dashpots) set_dashpot_velocity(offset, {0, 0, 0});
     set_force(offset, 0);
   }
-  if constexpr (dashpots) copy_to_chip(body.dashpots, body.dashpot_offset, body.entries);
-  if constexpr (records_on_chip) {
-    const unsigned rows_of_chunks = body.warps * body.rows + (clustered ? body.cut_warps * body.cut_rows : 0);
-    const unsigned rows = rows_of_chunks * (chunked ? body.chunks : 1);
-    Records::load(body, lanes * (rows + rows_read_ahead));
-  }
+  const unsigned rows_of_chunks = body.warps * body.rows + (clustered ? body.cut_warps * body.cut_rows : 0);
+  const unsigned rows = rows_of_chunks * (chunked ? body.chunks : 1);
+  Records::load(body, lanes * (rows + rows_read_ahead));
 }
 
 __device__ __forceinline__ void store(const Body& body, const Movers& movers) {

@@ -14,7 +14,7 @@ inline constexpr std::size_t largest_offset = 0xffff;
 
 /// The division of a block's shared memory: offsets and size in bytes. It is the same for all blocks of a body.
 struct ChipMemory {
-  std::size_t table_offset = 0, rate_offset = 0, dashpot_offset = 0, record_offset = 0, wave_offset = 0, size = 0;
+  std::size_t table_offset = 0, rate_offset = 0, coefficient_offset = 0, record_offset = 0, wave_offset = 0, size = 0;
   std::uint32_t table_steps = 1;
 };
 

@@ -62,10 +62,10 @@ MaterialFeatures material_features(const Body& body);
 Features features_of(const Scene& scene, const Stepping& stepping, Recording recording, MaterialFeatures materials,
                      const Channels& channels = {});
 
-/// Whether springs on the chip carry codes of their materials. In double precision, and beside dashpots, they do not:
-/// the rounded materials come from a table.
+/// Whether springs on the chip carry codes of their materials. In double precision, they do not: the rounded materials
+/// come from a table.
 inline bool has_codes(const Features& features) {
-  return features.materials == Materials::computed && !features.float64 && !features.dashpots;
+  return features.materials == Materials::computed && !features.float64;
 }
 
 /// Whether dashpots act at velocities that the method has predicted (Course::dashpot_velocity).

@@ -177,21 +177,22 @@ template <class T>
 struct ResidentBody {
   using Integer = typename FixedPoint<T>::Integer;
   StepConstants<T> constants;
-  CodeUnits<T> units;        ///< if materials are computed
-  const Record<T>* records;  ///< [warps][chunks][rows][lanes], [cut warps][chunks][cut rows][lanes], then the records
-                             ///< of the next block or, after the last, rows_read_ahead empty rows
-  const std::uint32_t* waves;        ///< likewise, MaterialCode::wave; if materials are computed
+  CodeUnits<T> units;          ///< if materials are computed
+  const Record<T>* records;    ///< [warps][chunks][rows][lanes], [cut warps][chunks][cut rows][lanes], then the records
+                               ///< of the next block or, after the last, rows_read_ahead empty rows
+  const std::uint32_t* waves;  ///< likewise, MaterialCode::wave; if materials are computed
   const std::uint32_t* first_group;  ///< [block's warps] the group of each warp's first row
   const std::uint32_t* group_ends;   ///< [block's warps][chunks] bit r: a group or the warp's work ends with row r
-  const Actuator* actuators;         ///< [entries]; entry 0 is for empty slots
-  const T* dashpots;                 ///< [entries] coefficient of the dashpots, units of force s/m; if the body has any
-  const T* mass;                     ///< [padded masses] kg
-  const T* inverse_mass;             ///< [padded masses] 1/kg; 0 for masses that never move
-  const Integer* start;              ///< [padded masses] start value of a force sum, by which its magic numbers cancel
-  Motion<T> motion;                  ///< [padded masses]
-  Triplets<T> dashpot_velocity;      ///< [padded masses] at which dashpots act next, m/s; if the body has any
-  double* stress;                    ///< [slots] sum of |force|, N
-  T* recent_stress;                  ///< [slots] the part of the sum that is not yet in `stress`, units; if chunked
+  const Actuator* actuators;         ///< [entries]; entry 0 is for empty slots; unless materials are computed
+  const T* coefficients;  ///< of the dashpots, units of force s/m: [entries] or, if materials are computed, like the
+                          ///< records; if the body has any
+  const T* mass;          ///< [padded masses] kg
+  const T* inverse_mass;  ///< [padded masses] 1/kg; 0 for masses that never move
+  const Integer* start;   ///< [padded masses] start value of a force sum, by which its magic numbers cancel
+  Motion<T> motion;       ///< [padded masses]
+  Triplets<T> dashpot_velocity;  ///< [padded masses] at which dashpots act next, m/s; if the body has any
+  double* stress;                ///< [slots] sum of |force|, N
+  T* recent_stress;              ///< [slots] the part of the sum that is not yet in `stress`, units; if chunked
   // [slots] if recorded; written by atomic operations that return no result, so that no thread waits; each slot has one
   // writer
   Integer* peak;     ///< bits of the largest |force|, units; as integers they have the same order as the forces
@@ -208,7 +209,7 @@ struct ResidentBody {
   std::uint32_t table_steps;               ///< steps for which the table in shared memory has rows
   std::uint32_t table_offset;              ///< of the table, bytes from the beginning of shared memory
   std::uint32_t rate_offset;               ///< of the rates, if work is recorded
-  std::uint32_t dashpot_offset;            ///< of the coefficients of the dashpots
+  std::uint32_t coefficient_offset;        ///< of the coefficients of the dashpots
   std::uint32_t record_offset;             ///< of the records
   std::uint32_t wave_offset;               ///< of the waves
   std::uint32_t halo_offset;               ///< of the halo

@@ -89,7 +89,8 @@ std::size_t Resident<T>::needs_of(const Features& features, const Room& room) {
 /// where reading springs from the device's memory costs less than a cluster.
 template <class T>
 bool Resident<T>::is_fast(std::size_t chip) const {
-  const std::size_t table = chip_.dashpot_offset - chip_.table_offset;
+  const std::size_t table =
+      (has_codes(features_) ? chip_.record_offset : chip_.coefficient_offset) - chip_.table_offset;
   return features_.float64 || table > chip / 4 || (records_on_chip_ && shape().chunks == 1);
 }
 
@@ -134,30 +135,38 @@ void Resident<T>::divide_chip(bool with_rates, std::size_t shared_bytes) {
   // bytes of a row: the material's entries, or one reading of the clock
   const std::size_t lengths = codes ? sizeof(std::uint32_t) : entries * sizeof(Entry<T>);
   const std::size_t rates = with_rates && !codes ? entries * sizeof(T) : 0;
-  const std::size_t dashpots = aligned(features_.dashpots ? entries * sizeof(T) : 0);
   const std::size_t masses = masses_bytes(), slots = shape().slots() + slots_read_ahead;
+  const std::size_t coefficients = aligned(coefficients_in(slots) * sizeof(T)), of_table = codes ? 0 : coefficients;
   const std::size_t records = slots * sizeof(Record<T>), waves = waves_in(slots) * sizeof(std::uint32_t);
+  const std::size_t springs = records + waves + coefficients - of_table;
   const MethodForm& method = form_of(features_.method);
   // whatever is recorded: sums in registers have as many terms as the table has steps, and the number of terms decides
   // how a sum is rounded
   const std::size_t steps = std::clamp<std::size_t>(table_bytes / lengths / method.rows_per_step, 1, longest_table);
   // the clock is read one row ahead
   const std::size_t rows = (features_.actuation ? method.rows(static_cast<unsigned>(steps)) : 1) + (codes ? 1 : 0);
-  records_on_chip_ =
-      aligned(masses) + aligned(rows * (lengths + rates)) + 32 + dashpots + records + waves <= shared_bytes;
+  records_on_chip_ = aligned(masses) + aligned(rows * (lengths + rates)) + 32 + of_table + springs <= shared_bytes;
   chip_.table_steps = static_cast<std::uint32_t>(steps);
   chip_.table_offset = aligned(masses);
   chip_.rate_offset = aligned(chip_.table_offset + rows * lengths);
-  chip_.dashpot_offset = aligned(chip_.rate_offset + rows * rates);
-  chip_.record_offset = chip_.dashpot_offset + dashpots;
+  const std::size_t end_of_table = aligned(chip_.rate_offset + rows * rates);
+  chip_.record_offset = end_of_table + of_table;
   chip_.wave_offset = chip_.record_offset + records;
-  chip_.size = chip_.record_offset + (records_on_chip_ ? records + waves : 0);
+  chip_.coefficient_offset = codes ? chip_.wave_offset + waves : end_of_table;
+  chip_.size = chip_.record_offset + (records_on_chip_ ? springs : 0);
 }
 
 /// The number of waves for `slots` slots: none if materials come from a table or nothing is actuated.
 template <class T>
 std::size_t Resident<T>::waves_in(std::size_t slots) const {
   return has_codes(features_) && features_.actuation ? slots : 0;
+}
+
+/// The number of coefficients of dashpots: one for each slot, or for each entry of the table.
+template <class T>
+std::size_t Resident<T>::coefficients_in(std::size_t slots) const {
+  if (!features_.dashpots) return 0;
+  return has_codes(features_) ? slots : task_->body->materials.size() + 1;
 }
 
 template <class T>
@@ -170,8 +179,8 @@ void Resident<T>::reserve() {
   first_group_ = input.add<std::uint32_t>(blocks() * shape().block);
   group_ends_ = input.add<std::uint32_t>(blocks() * shape().block * shape().chunks);
   copies_ = input.add<HaloCopy>(copies);
-  actuators_ = input.add<Actuator>(task_->body->materials.size() + 1);
-  dashpots_ = input.add<T>(features_.dashpots ? task_->body->materials.size() + 1 : 0);
+  actuators_ = input.add<Actuator>(has_codes(features_) ? 0 : task_->body->materials.size() + 1);
+  coefficients_ = input.add<T>(coefficients_in(slots() + slots_read_ahead));
   mass_ = input.add<T>(padded_masses());
   inverse_mass_ = input.add<T>(padded_masses());
   start_ = input.add<typename FixedPoint<T>::Integer>(padded_masses());

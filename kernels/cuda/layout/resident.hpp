@@ -75,6 +75,7 @@ class Resident {
   Resident(const Task& task, const Features& features, unsigned blocks, const Target& target, std::size_t needs);
   void divide_chip(bool with_rates, std::size_t shared_bytes);
   std::size_t waves_in(std::size_t slots) const;
+  std::size_t coefficients_in(std::size_t slots) const;
   void reserve();
   std::vector<typename FixedPoint<T>::Integer> materials_in_records(const MaterialUnits& units) const;
   static unsigned wanted_blocks(const Task& task, const Features& features, const Room& room);
@@ -83,7 +84,10 @@ class Resident {
   bool is_fast(std::size_t chip) const;
   std::size_t masses_bytes() const;
   void pack_records(Record<T>* to, const MaterialUnits& units) const;
+  template <class Number, class Of>
+  void pack_by_slot(const Of& number_of, Number* to) const;
   void pack_waves(std::uint32_t* to, const MaterialUnits& units) const;
+  void pack_materials(const Regions& host) const;
   void pack_blocks(const Regions& host) const;
   void place_block(std::size_t number, ResidentBody<T>& body) const;
   void pack_masses(const Regions& host) const;
@@ -106,7 +110,7 @@ class Resident {
   Section<std::uint32_t> first_group_, group_ends_;  // of all blocks
   Section<HaloCopy> copies_;                         // likewise
   Section<Actuator> actuators_;
-  Section<T> dashpots_;
+  Section<T> coefficients_;
   Section<T> mass_, inverse_mass_;
   Section<typename FixedPoint<T>::Integer> start_;
   Section<T> motion_[6], dashpot_velocity_[3];

@@ -40,14 +40,41 @@ void Resident<T>::pack_records(Record<T>* to, const MaterialUnits& units) const 
   std::fill_n(to + slots(), slots_read_ahead, Record<T>{});
 }
 
+/// Writes a number of each spring into its slots, and zeros into empty ones.
+template <class T>
+template <class Number, class Of>
+void Resident<T>::pack_by_slot(const Of& number_of, Number* to) const {
+  std::fill_n(to, slots() + slots_read_ahead, Number(0));
+  for (const auto& [arrangement, springs, copies, first_mass, first_slot] : arranged_->blocks())
+    for (std::size_t i = 0; i < arrangement.slot_of.size(); ++i)
+      to[first_slot + arrangement.slot_of[i]] = number_of(task_->body->springs[springs.empty() ? i : springs[i]]);
+}
+
 template <class T>
 void Resident<T>::pack_waves(std::uint32_t* to, const MaterialUnits& units) const {
   std::vector<std::uint32_t> waves;
   for (const Material& material : task_->body->materials) waves.push_back(code_of(material, units).wave);
-  std::fill_n(to, slots() + slots_read_ahead, 0u);
-  for (const auto& [arrangement, springs, copies, first_mass, first_slot] : arranged_->blocks())
-    for (std::size_t i = 0; i < arrangement.slot_of.size(); ++i)
-      to[first_slot + arrangement.slot_of[i]] = waves[task_->body->springs[springs.empty() ? i : springs[i]].material];
+  pack_by_slot<std::uint32_t>([&](const Spring& spring) { return waves[spring.material]; }, to);
+}
+
+/// Writes the entries of the table, if there is one, and the coefficients of the dashpots.
+template <class T>
+void Resident<T>::pack_materials(const Regions& host) const {
+  const bool codes = has_codes(features_);
+  const std::vector<Material> materials = simulated_materials(*task_->body, features_.materials);
+  if (!codes) {
+    actuators_.in(host.input)[0] = {};
+    std::transform(materials.begin(), materials.end(), actuators_.in(host.input) + 1,
+                   [&](const Material& material) { return actuator_of(material, range().resolution); });
+  }
+  if (!features_.dashpots) return;
+  std::vector<T> of_entries(materials.size() + 1);
+  pack_dashpots(*task_->body, materials, range().resolution, of_entries.data());
+  if (codes)
+    pack_by_slot<T>([&](const Spring& spring) { return of_entries[spring.material + 1]; },
+                    coefficients_.in(host.input));
+  else
+    std::ranges::copy(of_entries, coefficients_.in(host.input));
 }
 
 template <class T>
@@ -115,6 +142,7 @@ void Resident<T>::place_block(std::size_t number, ResidentBody<T>& body) const {
   for (std::size_t b = 0; b < number; ++b) body.halo_copies += blocks[b].copies.size();
   at(body.records, first_slot);
   at(body.waves, first_slot);
+  if (has_codes(features_)) at(body.coefficients, first_slot);
   at(body.first_group, number * shape().block);
   at(body.group_ends, number * shape().block * shape().chunks);
   at(body.mass, first_mass);
@@ -147,11 +175,7 @@ void Resident<T>::pack(const Regions& host, const Regions& device, const Scene& 
   if (waves_in(slots()) > 0) pack_waves(waves_.in(host.input), units);
   pack_masses(host);
   pack_blocks(host);
-  actuators_.in(host.input)[0] = {};
-  const std::vector<Material> materials = simulated_materials(*task_->body, features_.materials);
-  std::transform(materials.begin(), materials.end(), actuators_.in(host.input) + 1,
-                 [&](const Material& material) { return actuator_of(material, range().resolution); });
-  if (features_.dashpots) pack_dashpots(*task_->body, materials, range().resolution, dashpots_.in(host.input));
+  pack_materials(host);
   const ResidentBody<T> body{
       .constants = step_constants<T>(scene, task_->dt),
       .units = {.stiffness = static_cast<T>(units.stiffness / range().resolution),
@@ -163,7 +187,7 @@ void Resident<T>::pack(const Regions& host, const Regions& device, const Scene& 
       .first_group = first_group_.in(device.input),
       .group_ends = group_ends_.in(device.input),
       .actuators = actuators_.in(device.input),
-      .dashpots = dashpots_.in(device.input),
+      .coefficients = coefficients_.in(device.input),
       .mass = mass_.in(device.input),
       .inverse_mass = inverse_mass_.in(device.input),
       .start = start_.in(device.input),
@@ -189,7 +213,7 @@ void Resident<T>::pack(const Regions& host, const Regions& device, const Scene& 
       .table_steps = chip_.table_steps,
       .table_offset = static_cast<std::uint32_t>(chip_.table_offset),
       .rate_offset = static_cast<std::uint32_t>(chip_.rate_offset),
-      .dashpot_offset = static_cast<std::uint32_t>(chip_.dashpot_offset),
+      .coefficient_offset = static_cast<std::uint32_t>(chip_.coefficient_offset),
       .record_offset = static_cast<std::uint32_t>(chip_.record_offset),
       .wave_offset = static_cast<std::uint32_t>(chip_.wave_offset),
       .halo_copies = copies_.in(device.input),

@@ -1,5 +1,6 @@
-// Computed materials: each spring carries its material as a code, which is decoded in registers (paper, section V). A
-// step needs only one number for all springs, the clock: the phase of an oscillation with the body's unit of frequency.
+// Computed materials: each spring carries its material as a code, which is decoded in registers (paper, section V), and
+// the coefficient of its dashpot. A step needs only one number for all springs, the clock: the phase of an oscillation
+// with the body's unit of frequency.
 //
 //   clock, code ─► angle ─► stiffness, length of the spring now
 #pragma once
@@ -9,33 +10,44 @@
 
 namespace evodevo::cuda {
 
-/// The records and codes of the springs, beginning with a given spring.
+/// The records, codes and coefficients of the springs, beginning with a given spring.
 struct Records {
   struct Read : Record<Number> {
-    unsigned wave;  // MaterialCode::wave
+    unsigned wave;       // MaterialCode::wave
+    Number coefficient;  // of the dashpot
   };
   const Record<Number>* first;
   const std::uint32_t* first_wave;
+  const Number* first_coefficient;
 
   __device__ __forceinline__ Read operator[](unsigned i) const {
-    Read read{first[i], 0};
+    Read read{first[i], 0, 0};
     if constexpr (actuation) read.wave = first_wave[i];
+    if constexpr (dashpots) read.coefficient = first_coefficient[i];
     return read;
   }
-  __device__ __forceinline__ Records from(unsigned slot) const { return {first + slot, first_wave + slot}; }
+  __device__ __forceinline__ Records from(unsigned slot) const {
+    return {first + slot, first_wave + slot, first_coefficient + slot};
+  }
 
   static __device__ __forceinline__ Records of(const Body& body) {
-    return {array_of(body.records, body.record_offset), array_of(body.waves, body.wave_offset)};
+    return {array_of(body.records, body.record_offset), array_of(body.waves, body.wave_offset),
+            array_of(body.coefficients, body.coefficient_offset)};
   }
+  /// Copies what belongs on the chip. `count`: number of records.
   static __device__ __forceinline__ void load(const Body& body, unsigned count) {
-    copy_to_chip(body.records, body.record_offset, count);
-    if constexpr (actuation) copy_to_chip(body.waves, body.wave_offset, count);
+    if constexpr (records_on_chip) {
+      copy_to_chip(body.records, body.record_offset, count);
+      if constexpr (actuation) copy_to_chip(body.waves, body.wave_offset, count);
+      if constexpr (dashpots) copy_to_chip(body.coefficients, body.coefficient_offset, count);
+    }
   }
 };
 
 /// A spring's material in a pass.
 struct SpringMaterial {
   unsigned wave;
+  Number coefficient;
   Entry<Number> entry;
 };
 
@@ -62,7 +74,7 @@ struct Lengths {
     const Number stiffness = static_cast<Number>(read.packed >> 16) * units.stiffness;
     Number length = 1;  // L/L0
     if constexpr (actuation) length = physics::multiply_add(amplitude(read.wave), __sinf(angle(read.wave)), length);
-    return {read.wave, {stiffness, stiffness * length}};
+    return {read.wave, read.coefficient, {stiffness, stiffness * length}};
   }
 
   /// The rate of change of L/L0, 1/s.
@@ -74,8 +86,8 @@ struct Lengths {
     return rate;
   }
 
-  /// Bodies with dashpots have no codes (layout/features.hpp).
-  __device__ __forceinline__ Number damping_of(const SpringMaterial&) const { return 0; }
+  /// The coefficient of the dashpot, units of force s/m.
+  __device__ __forceinline__ Number damping_of(const SpringMaterial& material) const { return material.coefficient; }
 
   __device__ __forceinline__ void advance_rows(const Body&, unsigned rows_on) {
     row += rows_on * sizeof(unsigned);

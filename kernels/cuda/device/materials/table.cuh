@@ -19,8 +19,10 @@ struct Records {
   static __device__ __forceinline__ Records of(const Body& body) {
     return {array_of(body.records, body.record_offset)};
   }
+  /// Copies what belongs on the chip. `count`: number of records.
   static __device__ __forceinline__ void load(const Body& body, unsigned count) {
-    copy_to_chip(body.records, body.record_offset, count);
+    if constexpr (dashpots) copy_to_chip(body.coefficients, body.coefficient_offset, body.entries);
+    if constexpr (records_on_chip) copy_to_chip(body.records, body.record_offset, count);
   }
 };
 
@@ -38,7 +40,7 @@ struct Lengths {
 
   __device__ __forceinline__ explicit Lengths(const Body& body) : table(body.table_offset) {
     if constexpr (work) rates = body.rate_offset;
-    if constexpr (dashpots) coefficients = body.dashpot_offset;
+    if constexpr (dashpots) coefficients = body.coefficient_offset;
   }
 
   __device__ __forceinline__ SpringMaterial operator()(const Records::Read& record) const {
