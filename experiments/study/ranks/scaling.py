@@ -4,9 +4,9 @@ with what was measured (experiments/results/ranks/measured.csv).
 
   python3 experiments/study/ranks/scaling.py runs/ranks
 
-It assumes hosts whose cores feed their GPUs, and ranks that use a GPU as well as one process does;
-experiments/results/README.md has what two GPUs did in hosts and ranks that do not. The simulation deals out jobs as
-framework/cluster/farm.cpp does, and takes its times from measurements of one GPU and its host:
+It assumes hosts whose cores feed their GPUs; experiments/results/README.md has what up to four GPUs did in hosts that do
+not. The simulation deals out jobs as framework/cluster/farm.cpp does, and takes its times from measurements of one GPU
+and its host:
 
 - ROBOT_SECONDS: the life of a robot on an idle multiprocessor of an NVIDIA H200: 1.3e4 springs, 60,000 steps in the life
   of experiments/evo-devo.toml, 220,000 in that of experiments/paper.toml, and 3.3e11 spring evaluations per second of
@@ -37,25 +37,28 @@ SELECT = 7.8e-6
 PACK = 5e-6  # s for each robot of a message, both directions together
 MESSAGE = 20e-6  # s for each message, for rank 0
 LATENCY = 50e-6  # s, of each message
-JOBS, FAST = 16, 100  # jobs that a rank with a GPU has at once, and robots in each: worker.cpp
+JOBS, LIVES = 16, 64  # jobs that a rank with a GPU has at once, and robots in each: worker.cpp
+SMALLEST = 12  # robots in a job of a small batch: smallest_cohort in evaluation.hpp
 EVERY = 10  # generations from one migration to the next, the default
 GENERATIONS = 100  # of each island
 GENERATION = 1024  # robots for each GPU, if the population grows with the GPUs
 
 
-def job_size(left, jobs):
+def job_size(left, jobs, share):
     """job_size() in farm.cpp."""
-    return min(left, max(FAST // 4, min(FAST, left // (2 * jobs))))
+    least = max(1, min(LIVES, max(share // (JOBS // 4), min(share, SMALLEST))))
+    return min(left, max(least, min(4 * LIVES, left // (2 * jobs))))
 
 
 def evaluation_seconds(gpus, robots, robot_seconds, rng):
     """Returns the time from the first job to the last answer."""
     free_at = [[0.0] * MULTIPROCESSORS for _ in range(gpus)]  # each a heap
-    requests = [(0.0, gpu) for _ in range(JOBS) for gpu in range(gpus)]  # when a rank can have a job, and which
+    # when a rank can have a job, the number of jobs that it has then (at first), and the rank
+    requests = [(0.0, job, gpu) for job in range(JOBS) for gpu in range(gpus)]
     leader_free, last, left = 0.0, 0.0, robots
     while left:
-        at, gpu = heapq.heappop(requests)
-        count = job_size(left, JOBS * gpus)
+        at, _, gpu = heapq.heappop(requests)
+        count = job_size(left, JOBS * gpus, -(-robots // gpus))
         left -= count
         leader_free = max(leader_free, at) + MESSAGE + count * PACK
         begin, end = leader_free + LATENCY, 0.0
@@ -64,7 +67,7 @@ def evaluation_seconds(gpus, robots, robot_seconds, rng):
             done = max(free, begin) + robot_seconds * rng.lognormvariate(-SPREAD**2 / 2, SPREAD)
             heapq.heappush(free_at[gpu], done)
             end = max(end, done)
-        heapq.heappush(requests, (end + LATENCY, gpu))
+        heapq.heappush(requests, (end + LATENCY, 0, gpu))
         last = max(last, end + LATENCY)
     return max(last, leader_free)
 
