@@ -122,6 +122,14 @@ void DevelopmentLoop::allow_energy(Life& life, const Action& action) const {
   life.living.state.start_energy += std::max(0.0, energy() - before);
 }
 
+template <class Action>
+void DevelopmentLoop::allow_growth(Life& life, const Action& action) const {
+  const ElasticEnergy energy(life.living.body, life.living.state);
+  const double before = energy();
+  action();
+  life.living.state.start_energy += std::max(0.0, energy() - before);
+}
+
 Box DevelopmentLoop::bounds(const Life& life) const {
   const LivingBody& living = life.living;
   Box box =
@@ -219,7 +227,9 @@ DevoContext DevelopmentLoop::context_of(const Life& life, int cycle, const Sched
 void DevelopmentLoop::make(Change change, Life& life) const {
   if (change.edits.empty()) return;
   const auto apply_it = [&] { apply(change.edits, life.living); };
-  if (adds_energy(change))
+  if (only_grows(change.edits))
+    allow_growth(life, apply_it);
+  else if (adds_energy(change))
     allow_energy(life, apply_it);
   else
     apply_it();

@@ -73,6 +73,9 @@ class DevelopmentLoop {
   /// adds.
   template <class Action>
   void allow_energy(Life& life, const Action& action) const;
+  /// Does the same, in less time, if `action` changes nothing but rest lengths.
+  template <class Action>
+  void allow_growth(Life& life, const Action& action) const;
   /// Moves a body back to its rest positions and sets its velocities to zero.
   void return_to_rest(Life& life) const;
   /// Returns the box around the positions at which the next cycle starts, cut off below at the height of the highest

@@ -101,22 +101,17 @@ class Editor {
   void apply() {
     check_causes();
     if (edits_.growth) grow_springs(*edits_.growth);
+    if (only_grows(edits_)) return;  // as after every cycle in some lives
     change_springs();
     check_new_springs();  // before the indices of masses change
     move_masses();
     move_springs();
     for (const NewSpring& spring : edits_.new_springs) add_spring(spring);
-    if (!only_grows()) drop_unused_materials(body_);
+    drop_unused_materials(body_);
   }
 
  private:
   std::size_t old_masses() const { return mass_gone_.size(); }
-
-  /// Whether nothing changes but lengths, as after every cycle in some lives.
-  bool only_grows() const {
-    return edits_.removed_springs.empty() && edits_.removed_masses.empty() && edits_.changed_springs.empty() &&
-           edits_.new_masses.empty() && edits_.new_springs.empty();
-  }
 
   /// The index of a material among those of the body, to which it is added if it is not there.
   std::uint32_t index_of(const Material& material) {
@@ -382,6 +377,11 @@ Edits resolved(const Edits& edits, const DevoContext& context) {
   for (NewSpring& spring : result.new_springs)
     if (!spring.rest_length) spring.rest_length = forceless_length(spring, edits, context);
   return result;
+}
+
+bool only_grows(const Edits& edits) {
+  return edits.growth && edits.removed_springs.empty() && edits.removed_masses.empty() &&
+         edits.changed_springs.empty() && edits.new_masses.empty() && edits.new_springs.empty();
 }
 
 void apply(const Edits& resolved, LivingBody& living) {

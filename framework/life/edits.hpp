@@ -33,6 +33,9 @@ struct LivingBody : SpringRecords, MassRecords {
 /// are more or fewer causes than removed items, both lists stay as they are, and apply() throws.
 Edits resolved(const Edits& edits, const DevoContext& context);
 
+/// Whether edits change nothing but lengths, by growth.
+bool only_grows(const Edits& edits);
+
 /// Applies resolved edits, all of them together. New springs get the mean records of the springs that stay; new masses
 /// get the next numbers, and their records are 0. What operators remember follows the edits, and is 0 for new masses
 /// and springs unless remember() has given more. Materials that are no longer used are removed, except the

@@ -9,9 +9,10 @@ namespace {
 constexpr std::uint32_t phases = 1u << (32 - phase_shift);  // number of phases in a full turn
 constexpr double most_stiffness = 65'520, most_amplitude = 1'020, most_frequency = 1'020;
 
-std::uint32_t counted(double value, double unit) {
-  return unit > 0 ? static_cast<std::uint32_t>(std::lround(std::abs(value) / unit)) : 0;
-}
+/// The nearest whole number to one that is not negative; much faster than std::lround().
+std::uint32_t rounded(double value) { return static_cast<std::uint32_t>(value + 0.5); }
+
+std::uint32_t counted(double value, double unit) { return unit > 0 ? rounded(std::abs(value) / unit) : 0; }
 
 /// The phase (rad) that gives the same motion when amplitude and frequency are replaced by their absolute values.
 double phase_of(const Material& material) {
@@ -35,7 +36,7 @@ MaterialUnits material_units(const Body& body) {
 MaterialCode code_of(const Material& material, const MaterialUnits& units) {
   const double turns = phase_of(material) / full_turn;
   // a phase that rounds up to a whole turn is phase 0
-  const auto phase = static_cast<std::uint32_t>(std::lround((turns - std::floor(turns)) * phases)) % phases;
+  const std::uint32_t phase = rounded((turns - std::floor(turns)) * phases) % phases;
   const std::uint32_t least = material.stiffness > 0 ? 1 : 0;  // no spring loses its force
   return {std::max(least, counted(material.stiffness, units.stiffness)),
           phase << phase_shift | counted(material.amplitude, units.amplitude) << amplitude_shift |
@@ -47,14 +48,27 @@ Material material_of(const MaterialCode& code, const MaterialUnits& units) {
           (code.wave & frequency_mask) * units.frequency, (code.wave >> phase_shift) * (full_turn / phases)};
 }
 
+CodedMaterials::CodedMaterials(const Body& body) : units(material_units(body)), codes(body.materials.size()) {
+  std::vector<bool> known(codes.size());
+  for (const Spring& spring : body.springs) {
+    if (known[spring.material]) continue;
+    known[spring.material] = true;
+    codes[spring.material] = code_of(body.materials[spring.material], units);
+  }
+}
+
+std::vector<Material> rounded_materials(const Body& body, const CodedMaterials& coded) {
+  std::vector<Material> rounded = body.materials;
+  for (std::size_t i = 0; i < rounded.size(); ++i) {
+    if (coded.codes[i].stiffness == 0) continue;  // springs have at least one unit of stiffness
+    rounded[i] = material_of(coded.codes[i], coded.units);
+    rounded[i].damping = body.materials[i].damping;
+  }
+  return rounded;
+}
+
 std::vector<Material> simulated_materials(const Body& body, Materials way) {
-  std::vector<Material> simulated = body.materials;
-  if (way == Materials::table) return simulated;
-  const MaterialUnits units = material_units(body);
-  for (const Spring& spring : body.springs)
-    simulated[spring.material] = material_of(code_of(body.materials[spring.material], units), units);
-  for (std::size_t i = 0; i < simulated.size(); ++i) simulated[i].damping = body.materials[i].damping;
-  return simulated;
+  return way == Materials::table ? body.materials : rounded_materials(body, CodedMaterials(body));
 }
 
 }  // namespace evodevo

@@ -1,7 +1,7 @@
 // The paper's computed materials (section V): a spring carries its material as a short code that a GPU decodes. The
 // code rounds the material; the CPU simulates the rounded material too.
 //
-//   body ─► material_units ─► code_of (each spring's material) ─► material_of (the rounded material)
+//   body ─► material_units ─► code_of (the material of a spring) ─► material_of (the rounded material)
 #pragma once
 
 #include <vector>
@@ -31,6 +31,18 @@ MaterialCode code_of(const Material& material, const MaterialUnits& units);
 
 /// The material that a code represents.
 Material material_of(const MaterialCode& code, const MaterialUnits& units);
+
+/// The codes of the materials of a body's springs.
+struct CodedMaterials {
+  CodedMaterials() = default;
+  explicit CodedMaterials(const Body& body);
+
+  MaterialUnits units;
+  std::vector<MaterialCode> codes;  ///< of each material of the body; 0 for those that no spring has
+};
+
+/// The materials of a body after rounding; those that no spring has are unchanged.
+std::vector<Material> rounded_materials(const Body& body, const CodedMaterials& coded);
 
 /// The materials with which a body is simulated: those of springs are rounded if `way` is Materials::computed;
 /// materials that no spring has are unchanged.

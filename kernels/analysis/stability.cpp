@@ -72,32 +72,6 @@ class StiffnessMatrix {
     return with_weights(forces);
   }
 
-  /// An upper bound of the largest eigenvalue, 1/s^2. Because |xb - xa|^2 <= 2 |xa|^2 + 2 |xb|^2, A is at most twice
-  /// its diagonal blocks. The bound is therefore twice the largest eigenvalue of the block of any mass. Gershgorin's
-  /// bound, 2 sum(k)/m, is larger because it ignores that springs have different directions. NaN if a position is not
-  /// finite.
-  double bound() const {
-    std::vector<Eigen::Matrix3d> block(weight_.size(), Eigen::Matrix3d::Zero());
-    for (std::size_t i = 0; i < links_.size(); ++i) {
-      const Link& link = links_[i];
-      const Eigen::Matrix3d k = (resistance_[i] * link.direction) * link.direction.transpose();
-      block[link.a / 3] += k;
-      block[link.b / 3] += k;
-    }
-    double largest = 0;
-    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-    for (std::size_t i = 0; i < block.size(); ++i) {
-      const double scale = 2 * weight_[i] * weight_[i];
-      // the trace is an upper bound that costs nothing
-      if (scale == 0 || scale * block[i].trace() <= largest) continue;
-      solver.computeDirect(block[i], Eigen::EigenvaluesOnly);
-      const double bound = scale * solver.eigenvalues()[2];
-      if (std::isnan(bound)) return bound;
-      largest = std::max(largest, bound);
-    }
-    return largest;
-  }
-
  private:
   struct Link {
     std::uint32_t a, b;  ///< index of the first coordinate of the masses
@@ -193,22 +167,65 @@ Eigenpair largest_eigenpair(const StiffnessMatrix& matrix, double enough) {
   return {margin * estimate.first, std::move(vector)};
 }
 
-/// The cheapest upper bound of the largest eigenvalue (1/s^2), by Gershgorin discs on blocks of one mass: the largest 2
-/// sum(k)/m. NaN if a position is not finite.
-double disc_bound(const Body& body, std::span<const Vec3> positions, Resistance resistance) {
-  std::vector<double> sum(body.masses.size());
-  for (const Spring& spring : body.springs) {
-    const double stiffness = resistance(body, spring);
-    sum[spring.a] += stiffness;
-    sum[spring.b] += stiffness;
+/// Upper bounds of the largest eigenvalue of a StiffnessMatrix (1/s^2), which cost much less than the eigenvalue.
+class Bounds {
+ public:
+  Bounds(const Body& body, std::span<const Vec3> positions, Resistance resistance)
+      : body_(body), positions_(positions) {
+    resistance_.reserve(body.springs.size());
+    for (const Spring& spring : body.springs) resistance_.push_back(resistance(body, spring));
   }
-  double largest = 0, not_finite = 0;
-  for (std::size_t i = 0; i < sum.size(); ++i) {
-    if (body.masses[i].mass > 0) largest = std::max(largest, 2 * sum[i] / body.masses[i].mass);
-    not_finite += 0 * (positions[i].x + positions[i].y + positions[i].z);
+
+  /// The cheapest, by Gershgorin discs on blocks of one mass: the largest 2 sum(k)/m. NaN if a position is not finite.
+  double of_discs() const {
+    std::vector<double> sum(body_.masses.size());
+    for (std::size_t i = 0; i < resistance_.size(); ++i) {
+      sum[body_.springs[i].a] += resistance_[i];
+      sum[body_.springs[i].b] += resistance_[i];
+    }
+    double largest = 0, not_finite = 0;
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+      if (body_.masses[i].mass > 0) largest = std::max(largest, 2 * sum[i] / body_.masses[i].mass);
+      not_finite += 0 * (positions_[i].x + positions_[i].y + positions_[i].z);
+    }
+    return largest + not_finite;
   }
-  return largest + not_finite;
-}
+
+  /// A smaller one. Because |xb - xa|^2 <= 2 |xa|^2 + 2 |xb|^2, the matrix is at most twice its diagonal blocks. The
+  /// bound is therefore twice the largest eigenvalue of the block of any mass. That of the discs is larger because it
+  /// ignores that springs have different directions. NaN if a position is not finite.
+  double of_blocks() const {
+    std::vector<Eigen::Matrix3d> block(body_.masses.size(), Eigen::Matrix3d::Zero());
+    for (std::size_t i = 0; i < resistance_.size(); ++i) {
+      const Spring& spring = body_.springs[i];
+      const Vec3 d = positions_[spring.b] - positions_[spring.a];
+      const double squared = dot(d, d);
+      // a spring without a direction is treated as resisting in every direction: an upper bound for any direction
+      const Eigen::Vector3d v(d.x, d.y, d.z);
+      const Eigen::Matrix3d k = squared != 0 ? Eigen::Matrix3d((resistance_[i] / squared * v) * v.transpose())
+                                             : Eigen::Matrix3d(resistance_[i] * Eigen::Matrix3d::Identity());
+      block[spring.a] += k;
+      block[spring.b] += k;
+    }
+    double largest = 0;
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+    for (std::size_t i = 0; i < block.size(); ++i) {
+      const double mass = body_.masses[i].mass;
+      // the trace is an upper bound that costs nothing
+      if (!(mass > 0) || 2 * block[i].trace() <= largest * mass) continue;
+      solver.computeDirect(block[i], Eigen::EigenvaluesOnly);
+      const double bound = 2 * solver.eigenvalues()[2] / mass;
+      if (std::isnan(bound)) return bound;
+      largest = std::max(largest, bound);
+    }
+    return largest;
+  }
+
+ private:
+  const Body& body_;
+  std::span<const Vec3> positions_;
+  std::vector<double> resistance_;  ///< of each spring, N/m
+};
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -267,10 +284,11 @@ struct Limit {
 /// f(s dt) <= s f(dt) if s < 1, and f(s dt) <= s^2 f(dt) if s > 1. So lambda at any dt leads to a dt that is safe, and
 /// the nearer the first one was to the limit, the nearer is the second. On the other side, the eigenvector x of one dt
 /// is a bound for all: no dt is stable for which dt^2 x^T (K + (rate/dt) C) x is above oscillation^2.
-double largest_damped_dt(StiffnessMatrix& matrix, const Limit& limit) {
+double largest_damped_dt(const Body& body, std::span<const Vec3> positions, const Limit& limit) {
   constexpr int looks = 10;
   constexpr double near_enough = 0.96;  // with the 1 % of the margin, 5 % below the true limit
-  double dt = limit.dt(matrix.with({1, 0}).bound(), matrix.with({0, 1}).bound());
+  double dt = limit.dt(Bounds(body, positions, {1, 0}).of_blocks(), Bounds(body, positions, {0, 1}).of_blocks());
+  StiffnessMatrix matrix(body, positions);
   for (int i = 0; i < looks; ++i) {
     const auto [eigenvalue, vector] = largest_eigenpair(matrix.with(limit.at(dt)), infinity);
     const double damping = vector.dot(matrix.with({0, 1}).times(vector));
@@ -333,12 +351,15 @@ double largest_dt(const Body& body, std::span<const Vec3> positions, Method meth
   if (!is_explicit(method)) return wanted;
   const bool damped = is_damped(body);
   const Limit limit(method, damped);
-  if (wanted * std::sqrt(disc_bound(body, positions, limit.at(wanted))) <= limit.oscillation) return wanted;
-  StiffnessMatrix matrix(body, positions);
-  const double bound = matrix.with(limit.at(wanted)).bound();
+  const Bounds bounds(body, positions, limit.at(wanted));
+  if (wanted * std::sqrt(bounds.of_discs()) <= limit.oscillation) return wanted;
+  const double bound = bounds.of_blocks();
   if (bound == 0 || wanted * std::sqrt(bound) <= limit.oscillation) return wanted;
-  const double largest = damped ? largest_damped_dt(matrix, limit)
-                                : limit.oscillation / std::sqrt(largest_eigenpair(matrix.with({}), infinity).value);
+  const auto undamped = [&] {
+    StiffnessMatrix matrix(body, positions);
+    return limit.oscillation / std::sqrt(largest_eigenpair(matrix.with({}), infinity).value);
+  };
+  const double largest = damped ? largest_damped_dt(body, positions, limit) : undamped();
   return largest >= wanted ? wanted : largest;  // NaN stays NaN
 }
 
@@ -360,9 +381,10 @@ bool is_stable(const Body& body, std::span<const Vec3> positions, const Scene& s
   const Limit of_method(method, is_damped(body), uniform_damping(scene, method) * dt);
   const double limit = of_method.eigenvalue(dt);
   const Resistance resistance = of_method.at(dt);
-  if (disc_bound(body, positions, resistance) <= limit) return true;
+  const Bounds bounds(body, positions, resistance);
+  if (bounds.of_discs() <= limit || bounds.of_blocks() <= limit) return true;
   StiffnessMatrix matrix(body, positions);
-  return matrix.with(resistance).bound() <= limit || largest_eigenpair(matrix, limit).value <= limit;
+  return largest_eigenpair(matrix.with(resistance), limit).value <= limit;
 }
 
 }  // namespace evodevo

@@ -41,9 +41,10 @@ COLUMNS = ["experiment", "seed", "individual", "life", "distance", "turns"]
 
 class Genes:
     """Where a run keeps the sizes and the phases of voxels: for each gene at birth that at the end, which is the same
-    if robots do not develop. `run`: an evodevo.Run of one of these experiments."""
+    if robots do not develop. `run`: an evodevo.Run of one of these experiments; `individual`: whose genes these are."""
 
     def __init__(self, run, individual):
+        self.individual = individual
         table = run.genes(individual)
         self.low, self.high = table["low"].to_numpy(), table["high"].to_numpy()
         self._block = table["block"].to_numpy()
@@ -124,7 +125,7 @@ def live(experiment, genes, genomes):
     def bodies(progress):
         made = []
         for values in genomes:
-            made.append(experiment.genome(0))
+            made.append(experiment.genome(genes.individual))
             made[-1].genes = genes.at(values, progress)
         return experiment.decode(made)
 

@@ -77,17 +77,16 @@ class Resident {
   std::size_t waves_in(std::size_t slots) const;
   std::size_t coefficients_in(std::size_t slots) const;
   void reserve();
-  std::vector<typename FixedPoint<T>::Integer> materials_in_records(const MaterialUnits& units) const;
+  std::vector<typename FixedPoint<T>::Integer> materials_in_records(const CodedMaterials& coded) const;
   static unsigned wanted_blocks(const Task& task, const Features& features, const Room& room);
   static std::size_t needs_of(const Features& features, const Room& room);
   static bool may_suffice(const Task& task, const Features& features, unsigned blocks, bool is_last, std::size_t chip);
   bool is_fast(std::size_t chip) const;
   std::size_t masses_bytes() const;
-  void pack_records(Record<T>* to, const MaterialUnits& units) const;
+  void pack_records(Record<T>* to, const CodedMaterials& coded) const;
   template <class Number, class Of>
   void pack_by_slot(const Of& number_of, Number* to) const;
-  void pack_waves(std::uint32_t* to, const MaterialUnits& units) const;
-  void pack_materials(const Regions& host) const;
+  void pack_materials(const Regions& host, const CodedMaterials& coded) const;
   void pack_blocks(const Regions& host) const;
   void place_block(std::size_t number, ResidentBody<T>& body) const;
   void pack_masses(const Regions& host) const;

@@ -8,20 +8,19 @@ namespace evodevo::cuda {
 
 /// The high half of Record::packed for each material.
 template <class T>
-std::vector<typename FixedPoint<T>::Integer> Resident<T>::materials_in_records(const MaterialUnits& units) const {
-  const std::vector<Material>& materials = task_->body->materials;
+std::vector<typename FixedPoint<T>::Integer> Resident<T>::materials_in_records(const CodedMaterials& coded) const {
   const unsigned entry_size = sizeof(Entry<T>) / (form().wide_table ? sizeof(T) : 1);
   std::vector<typename FixedPoint<T>::Integer> halves;
-  for (std::uint32_t i = 0; i < materials.size(); ++i)
-    halves.push_back(has_codes(features_) ? code_of(materials[i], units).stiffness : (i + 1) * entry_size);
+  for (std::uint32_t i = 0; i < task_->body->materials.size(); ++i)
+    halves.push_back(has_codes(features_) ? coded.codes[i].stiffness : (i + 1) * entry_size);
   return halves;
 }
 
 template <class T>
-void Resident<T>::pack_records(Record<T>* to, const MaterialUnits& units) const {
+void Resident<T>::pack_records(Record<T>* to, const CodedMaterials& coded) const {
   using Integer = typename FixedPoint<T>::Integer;
   const std::uint32_t unit = form().wide_offsets ? sizeof(T) : 1;
-  const std::vector<Integer> materials = materials_in_records(units);
+  const std::vector<Integer> materials = materials_in_records(coded);
   const std::span<const std::uint32_t> counted = arranged_->slot_of();
   for (const auto& [arrangement, springs, copies, first_mass, first_slot] : arranged_->blocks()) {
     std::ranges::transform(arrangement.slots, to + first_slot, [&](const Arrangement::Slot& slot) {
@@ -50,18 +49,16 @@ void Resident<T>::pack_by_slot(const Of& number_of, Number* to) const {
       to[first_slot + arrangement.slot_of[i]] = number_of(task_->body->springs[springs.empty() ? i : springs[i]]);
 }
 
+/// Writes the codes of materials, if springs carry codes, or else the entries of the table, and the coefficients of the
+/// dashpots.
 template <class T>
-void Resident<T>::pack_waves(std::uint32_t* to, const MaterialUnits& units) const {
-  std::vector<std::uint32_t> waves;
-  for (const Material& material : task_->body->materials) waves.push_back(code_of(material, units).wave);
-  pack_by_slot<std::uint32_t>([&](const Spring& spring) { return waves[spring.material]; }, to);
-}
-
-/// Writes the entries of the table, if there is one, and the coefficients of the dashpots.
-template <class T>
-void Resident<T>::pack_materials(const Regions& host) const {
+void Resident<T>::pack_materials(const Regions& host, const CodedMaterials& coded) const {
   const bool codes = has_codes(features_);
-  const std::vector<Material> materials = simulated_materials(*task_->body, features_.materials);
+  if (waves_in(slots()) > 0)
+    pack_by_slot<std::uint32_t>([&](const Spring& spring) { return coded.codes[spring.material].wave; },
+                                waves_.in(host.input));
+  const std::vector<Material> materials =
+      codes ? rounded_materials(*task_->body, coded) : simulated_materials(*task_->body, features_.materials);
   if (!codes) {
     actuators_.in(host.input)[0] = {};
     std::transform(materials.begin(), materials.end(), actuators_.in(host.input) + 1,
@@ -170,12 +167,12 @@ void Resident<T>::place_block(std::size_t number, ResidentBody<T>& body) const {
 
 template <class T>
 void Resident<T>::pack(const Regions& host, const Regions& device, const Scene& scene, ResidentBody<T>* to) const {
-  const MaterialUnits units = has_codes(features_) ? material_units(*task_->body) : MaterialUnits{};
-  pack_records(records_.in(host.input), units);
-  if (waves_in(slots()) > 0) pack_waves(waves_.in(host.input), units);
+  const CodedMaterials coded = has_codes(features_) ? CodedMaterials(*task_->body) : CodedMaterials();
+  const MaterialUnits& units = coded.units;
+  pack_records(records_.in(host.input), coded);
   pack_masses(host);
   pack_blocks(host);
-  pack_materials(host);
+  pack_materials(host, coded);
   const ResidentBody<T> body{
       .constants = step_constants<T>(scene, task_->dt),
       .units = {.stiffness = static_cast<T>(units.stiffness / range().resolution),
