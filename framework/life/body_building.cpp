@@ -273,7 +273,7 @@ void check_blueprint(const Blueprint& blueprint, const EncodingContext& context)
     require(spring.stiffness_factor > 0 && std::isfinite(body.stiffness(spring)), "spring", i,
             "has a stiffness_factor that is not above 0, or a stiffness that is not finite");
   }
-  if (const std::optional<std::size_t> twin = doubled_spring(body)) {
+  if (const std::optional<std::size_t> twin = blueprint.parallel ? std::nullopt : doubled_spring(body)) {
     const Spring& spring = body.springs[*twin];
     throw std::invalid_argument("spring " + std::to_string(*twin) + " joins masses " + std::to_string(spring.a) +
                                 " and " + std::to_string(spring.b) + ", which are joined already");

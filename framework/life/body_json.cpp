@@ -1,7 +1,6 @@
 #include "life/body_json.hpp"
 
 #include <limits>
-#include <set>
 
 #include "base/json_input.hpp"
 #include "life/body_building.hpp"
@@ -61,7 +60,6 @@ class BodyReader {
 
   void read_springs(const Json& root) {
     const std::size_t masses = body_.masses.size();
-    std::set<std::pair<std::uint32_t, std::uint32_t>> joined;
     input_.each(root, "springs", [&](const Json& item, const std::string& at) {
       input_.expect(item, at, {"a", "b", "rest_length", "material", "stiffness_factor"});
       Spring spring{input_.index(item, at, "a", masses), input_.index(item, at, "b", masses),
@@ -70,9 +68,6 @@ class BodyReader {
       if (item.contains("stiffness_factor"))
         spring.stiffness_factor = input_.number(item, at, "stiffness_factor", std::numeric_limits<double>::min());
       if (spring.a == spring.b) input_.fail(at, "joins mass " + std::to_string(spring.a) + " to itself");
-      if (!joined.insert(std::minmax(spring.a, spring.b)).second)
-        input_.fail(at,
-                    "masses " + std::to_string(spring.a) + " and " + std::to_string(spring.b) + " are joined already");
       body_.springs.push_back(spring);
     });
   }

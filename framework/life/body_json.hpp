@@ -32,7 +32,7 @@ std::string body_to_json(const GivenBody& given, const std::vector<std::string>&
 
 /// Reads a body from a file in this format. Throws a ConfigError that gives the file, the place and a remedy if the
 /// file cannot be read or its JSON is not as described above: for example, if a key is unknown or occurs twice, an
-/// index is out of range, a pair of masses is joined twice, or a number is not finite or has the wrong sign.
+/// index is out of range, or a number is not finite or has the wrong sign.
 GivenBody read_body(const std::string& file);
 
 }  // namespace evodevo

@@ -9,8 +9,9 @@ using evodevo::Material;
 /// Each voxel has one block of genes: its material, if `size_range` is above 0 its size, and if `phase_range` is above
 /// 0 the phase of its muscles, the last two at birth and at the end of development (Kriegman et al. 2017 and 2018; in
 /// the paper's words, "a start and end volume"). Voxels of air are absent. A spring that belongs to several voxels has
-/// the mean of their materials, sizes and phases. The positions of the masses at birth are those of a lattice of equal
-/// voxels. If genes are mirrored, only the voxels of the half with the smaller x have them.
+/// the mean of their materials, sizes and phases, or each voxel has springs and masses of its own. The positions of the
+/// masses at birth are those of a lattice of equal voxels. If genes are mirrored, only the voxels of the half with the
+/// smaller x have them.
 class Voxel final : public evodevo::LatticeEncoding {
  public:
   void parameters(evodevo::Parameters& p) override {
@@ -24,6 +25,9 @@ class Voxel final : public evodevo::LatticeEncoding {
     p.flag(grows_, "grows",
            "Whether voxels have genes of their own for size and phase at the end of development; otherwise both stay "
            "as at birth.");
+    p.choice(springs_, "springs", {"shared", "own"},
+             "Whether voxels share the springs between their common corners, or each voxel has springs of its own, "
+             "which act in parallel to those of its neighbours, and an eighth of the mass at each of its corners.");
     p.choice(mirrored_, "mirrored", {"nothing", "body", "all"},
              "Which genes voxels share with their mirror images across the plane through the middle at right angles to "
              "x: none, those of material and size, or those of the phase, too.");
@@ -52,23 +56,16 @@ class Voxel final : public evodevo::LatticeEncoding {
     const evodevo::Lattice& lattice = this->lattice();
     const std::vector<Traits> voxels = traits_of_voxels(genome, materials);
     evodevo::Blueprint blueprint{masses(lattice, context), 0, {}};
+    blueprint.parallel = springs_ == "own";
+    const auto is_solid = [&](std::uint32_t v) { return !is_air(context.materials[voxels[v].material]); };
+    if (blueprint.parallel) share_out_mass(blueprint.body, is_solid);
     for (const evodevo::LatticeSpring& spring : lattice.springs) {
-      std::vector<std::int32_t> around;
-      Course size, phase;
-      for (const std::uint32_t v : spring.voxels) {
-        around.push_back(voxels[v].material);
-        if (is_air(context.materials[around.back()])) continue;
-        size.add(voxels[v].size);
-        phase.add(voxels[v].phase);
+      if (blueprint.parallel && std::ranges::any_of(spring.voxels, is_solid)) {
+        for (const std::uint32_t v : spring.voxels)
+          if (is_solid(v)) add_spring(blueprint.body, spring, {&v, 1}, voxels, context);
+      } else {
+        add_spring(blueprint.body, spring, spring.voxels, voxels, context);
       }
-      Material material = mean_of_solid(context.materials, std::move(around));
-      const bool is_muscle = material.amplitude != 0;
-      if (is_muscle) material.phase += phase.birth / size.count * full_turn;
-      if (!join(blueprint.body, spring, material)) continue;
-      evodevo::Spring& joined = blueprint.body.springs.back();
-      joined.rest_length *= size.birth / size.count;
-      joined.growth = static_cast<float>(size.end / size.birth);
-      if (is_muscle) joined.phase_growth = static_cast<float>((phase.end - phase.birth) / phase.count * full_turn);
     }
     return blueprint;
   }
@@ -111,6 +108,41 @@ class Voxel final : public evodevo::LatticeEncoding {
     names.push_back("material");
     if (size_range_ > 0) add("size");
     return names;
+  }
+
+  /// Adds a spring with the mean traits of some voxels, unless all of them are air.
+  static void add_spring(evodevo::Body& body, const evodevo::LatticeSpring& spring, std::span<const std::uint32_t> of,
+                         const std::vector<Traits>& voxels, const evodevo::EncodingContext& context) {
+    std::vector<std::int32_t> around;
+    Course size, phase;
+    for (const std::uint32_t v : of) {
+      around.push_back(voxels[v].material);
+      if (is_air(context.materials[around.back()])) continue;
+      size.add(voxels[v].size);
+      phase.add(voxels[v].phase);
+    }
+    Material material = mean_of_solid(context.materials, std::move(around));
+    const bool is_muscle = material.amplitude != 0;
+    if (is_muscle) material.phase += phase.birth / size.count * full_turn;
+    if (!join(body, spring, material)) return;
+    evodevo::Spring& joined = body.springs.back();
+    joined.rest_length *= size.birth / size.count;
+    joined.growth = static_cast<float>(size.end / size.birth);
+    if (is_muscle) joined.phase_growth = static_cast<float>((phase.end - phase.birth) / phase.count * full_turn);
+  }
+
+  /// Gives each mass an eighth of its mass for each solid voxel of which it is a corner; other masses, which have no
+  /// springs, keep theirs.
+  void share_out_mass(evodevo::Body& body, const auto& is_solid) const {
+    std::vector<int> solid(body.masses.size());
+    for (const evodevo::LatticeSpring& spring : lattice().springs) {
+      // each corner of a voxel is the end of one body diagonal
+      if (!lattice().is_body_diagonal(spring) || !is_solid(spring.voxels.front())) continue;
+      ++solid[spring.a];
+      ++solid[spring.b];
+    }
+    for (std::size_t i = 0; i < solid.size(); ++i)
+      if (solid[i] > 0) body.masses[i].mass *= solid[i] / 8.0;
   }
 
   std::vector<Traits> traits_of_voxels(const evodevo::Genome& genome,
@@ -161,7 +193,7 @@ class Voxel final : public evodevo::LatticeEncoding {
 
   double size_range_ = 0, phase_range_ = 0;
   bool grows_ = true;
-  std::string mirrored_ = "nothing";
+  std::string springs_ = "shared", mirrored_ = "nothing";
 };
 
 }  // namespace

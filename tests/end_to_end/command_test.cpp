@@ -526,10 +526,6 @@ TEST_F(Command, FaultyBodiesAreRefusedByPlace) {
   EXPECT_THAT(refusal("{" + materials + "," + masses +
                       R"(, "springs": [{"a": 0, "b": 1, "rest_length": 1, "material": 0, "stiffness_factor": 0}]})"),
               testing::at_place(": springs[0].stiffness_factor: ", "0"));
-  EXPECT_THAT(
-      refusal("{" + materials + "," + masses + R"(, "springs": [{"a": 0, "b": 1, "rest_length": 1, "material": 0},
-                    {"a": 1, "b": 0, "rest_length": 1, "material": 0}]})"),
-      testing::at_place(": springs[1]: ", "masses 1 and 0", "joined already"));
 }
 
 TEST_F(Command, OperatorsDescribeThemselves) {

@@ -152,6 +152,8 @@ TEST(BodyBuilding, NoTwoSpringsJoinOnePair) {
               testing::naming("spring 2 ", "masses 2 and 3", "joined already"));
   EXPECT_THAT(fault({{0, 3, 1, 0}, {1, 3, 1, 0}, {0, 2, 1, 0}, {3, 0, 1, 0}}),
               testing::naming("spring 3 ", "masses 3 and 0", "joined already"));
+  blueprint.parallel = true;
+  EXPECT_EQ(fault({{0, 3, 1, 0}, {1, 3, 1, 0}, {0, 2, 1, 0}, {3, 0, 1, 0}}), "");
 }
 
 TEST(BodyBuilding, NeighboursThatAreJoinedAlreadyAreNotJoinedAgain) {

@@ -369,6 +369,24 @@ TEST(Voxel, SharedSpringsTakeTheMean) {
   }
 }
 
+TEST(Voxel, SpringsOfTheirOwnActInParallel) {
+  const auto encoding = make<Encoding>("voxel", "size = [2, 1, 1]\nsprings = 'own'");
+  const Body body = decoded(*encoding, choices({muscle2, bone})).body;
+  EXPECT_EQ(stiffnesses(body), (std::map<double, int>{{5000, 28}, {10000, 28}}));
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> joins;
+  for (const Spring& spring : body.springs) ++joins[std::minmax(spring.a, spring.b)];
+  EXPECT_EQ(std::ranges::count_if(joins, [](const auto& join) { return join.second == 2; }), 6) << "the common face";
+  for (const Mass& mass : body.masses) EXPECT_DOUBLE_EQ(mass.mass, context().mass * (mass.rest.x == 0 ? 2 : 1) / 8);
+}
+
+TEST(Voxel, VoxelsOfAirHaveNoSpringsOfTheirOwn) {
+  const auto encoding = make<Encoding>("voxel", "size = [2, 1, 1]\nsprings = 'own'");
+  const Body alone = decoded(*encoding, choices({muscle2, air})).body;
+  EXPECT_EQ(stiffnesses(alone), (std::map<double, int>{{5000, 28}}));
+  for (const Spring& spring : alone.springs)
+    for (const std::uint32_t end : {spring.a, spring.b}) EXPECT_DOUBLE_EQ(alone.masses[end].mass, context().mass / 8);
+}
+
 TEST(Voxel, VoxelsOfAirAreAbsent) {
   const auto encoding = make<Encoding>("voxel", "size = [2, 1, 1]");
   const Body body = decoded(*encoding, choices({muscle, air})).body;

@@ -44,9 +44,8 @@ Arguments arguments_in(const std::string& line, const std::string& place) {
   return json.get<Arguments>();
 }
 
-/// Returns the values of the arguments in a line. A run that does not say how many threads it uses has `threads`.
-Given read_line(const std::string& line, const std::string& place, std::size_t threads) {
-  Arguments arguments = arguments_in(line, place);
+/// Returns the values of the arguments of a line. A run that does not say how many threads it uses has `threads`.
+Given read_line(Arguments arguments, const std::string& place, std::size_t threads) {
   const auto is_about_threads = [](const std::string& word) { return word.starts_with("--threads"); };
   if (std::ranges::none_of(arguments, is_about_threads))
     arguments.insert(arguments.end(), {"--threads", std::to_string(threads)});
@@ -62,13 +61,26 @@ Given read_line(const std::string& line, const std::string& place, std::size_t t
   return given;
 }
 
-std::vector<Given> read_runs(const std::string& file, std::size_t threads) {
-  std::istringstream lines(read_input_file(file, most_bytes));
-  std::vector<Given> runs;
+/// The threads of each of several runs that are made at once. They share the cores; the number is rounded up, because
+/// runs often wait for a GPU.
+std::size_t threads_of_each(std::size_t runs) {
+  const auto cores = static_cast<std::size_t>(thread_count(0));
+  return (cores + runs - 1) / runs;
+}
+
+/// Reads the runs in a file, of which at most `jobs` are made at once.
+std::vector<Given> read_runs(const std::string& file, std::size_t jobs) {
+  std::istringstream text(read_input_file(file, most_bytes));
+  std::vector<std::pair<std::string, Arguments>> lines;  // with their places
   std::string line;
-  for (int number = 1; std::getline(lines, line); ++number)
-    if (!line.empty()) runs.push_back(read_line(line, printable(file) + ':' + std::to_string(number), threads));
-  if (runs.empty()) throw UsageError(printable(file) + ": has no runs; give a file with a line for each run");
+  for (int number = 1; std::getline(text, line); ++number) {
+    const std::string place = printable(file) + ':' + std::to_string(number);
+    if (!line.empty()) lines.emplace_back(place, arguments_in(line, place));
+  }
+  if (lines.empty()) throw UsageError(printable(file) + ": has no runs; give a file with a line for each run");
+  const std::size_t threads = threads_of_each(std::min(jobs, lines.size()));
+  std::vector<Given> runs;
+  for (auto& [place, arguments] : lines) runs.push_back(read_line(std::move(arguments), place, threads));
   return runs;
 }
 
@@ -98,8 +110,7 @@ int run_many(const Given& given) {
   stop_on_signals();
   never_end_on_signals();
   const std::size_t jobs = given_jobs(given);
-  const std::size_t threads = std::max<std::size_t>(1, static_cast<std::size_t>(thread_count(0)) / jobs);
-  const std::vector<Given> runs = read_runs(given["FILE"].as<std::string>(), threads);
+  const std::vector<Given> runs = read_runs(given["FILE"].as<std::string>(), jobs);
   usable_gpus();  // prepares the environment for the driver before there are other threads
   std::atomic<std::size_t> next = 0;
   std::mutex mutex;

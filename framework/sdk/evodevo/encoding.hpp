@@ -52,6 +52,7 @@ struct Blueprint {
   /// What masses remember at birth: a number for each mass by name. Devo operators take those that they have declared
   /// under the same name (Devo::mass_memory).
   std::map<std::string, std::vector<double>> mass_memory = {};
+  bool parallel = false;  ///< whether several springs may join the same pair of masses; otherwise, this is an error
 };
 
 class Encoding : public Operator {

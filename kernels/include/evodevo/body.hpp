@@ -83,7 +83,8 @@ struct Spring {
   float phase_growth = 0;       ///< phase at the end of ballistic development minus that at birth, rad
 };
 
-/// A body without its motion. No two springs join the same pair of masses.
+/// A body without its motion. Springs that join the same pair of masses act in parallel; only encodings that ask for
+/// it make such springs (Blueprint::parallel).
 struct Body {
   std::vector<Mass> masses;
   std::vector<Spring> springs;

@@ -24,6 +24,11 @@ struct Lattice {
   std::vector<LatticeSpring> springs;  ///< ascending by (a, b)
 
   std::uint32_t voxels() const { return size[0] * size[1] * size[2]; }
+  /// Whether a spring joins opposite corners of a voxel.
+  bool is_body_diagonal(const LatticeSpring& spring) const {
+    const Vec3 d = corners[spring.b] - corners[spring.a];
+    return d.x != 0 && d.y != 0 && d.z != 0;
+  }
   /// Returns the voxel that is the mirror image of a voxel across the plane through the middle of the block at right
   /// angles to x.
   std::uint32_t mirrored_voxel(std::uint32_t voxel) const { return mirrored(voxel, size[0]); }

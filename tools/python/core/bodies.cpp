@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <limits>
-#include <set>
 
 #include "base/text.hpp"
 
@@ -109,7 +108,6 @@ class BodyReader {
     const Attribute lengths = attribute("rest_lengths", for_each_spring),
                     materials = attribute("material_of", for_each_spring),
                     factors = attribute("stiffness_factors", for_each_spring);
-    std::set<std::pair<std::uint32_t, std::uint32_t>> joined;
     for (std::size_t i = 0; i < ends.size(); ++i) {
       const auto end = [&](std::size_t column) {
         return static_cast<std::uint32_t>(ends.index(i, column, body_.masses.size()));
@@ -118,9 +116,6 @@ class BodyReader {
                     static_cast<std::uint32_t>(materials.index(i, 0, body_.materials.size()))};
       spring.stiffness_factor = factors.number(i, 0, above_zero);
       if (spring.a == spring.b) ends.fail(i, "joins mass " + std::to_string(spring.a) + " to itself; remove it");
-      if (!joined.insert(std::minmax(spring.a, spring.b)).second)
-        ends.fail(i, "masses " + std::to_string(spring.a) + " and " + std::to_string(spring.b) +
-                         " are joined already; remove one of the springs");
       body_.springs.push_back(spring);
     }
   }
