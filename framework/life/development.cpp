@@ -22,6 +22,11 @@ bool adds_energy(const Change& change) {
          change.lengths_given;
 }
 
+/// Returns a function that computes the energy of a living body, J.
+auto energy_of(const Life& life) {
+  return [&life] { return total_energy(life.living.body, life.living.state, *life.scene); };
+}
+
 }  // namespace
 
 double DevelopmentLoop::duration() const {
@@ -79,7 +84,7 @@ void DevelopmentLoop::run_cycles(std::span<Life> lives, bool observed, const Act
       if (!lives[i].alive()) return;
       record_masses(request, lives[i].living);
       change(i, cycle);
-      if (development.reset) allow_energy(lives[i], [&] { return_to_rest(lives[i]); });
+      if (development.reset) allow_energy(lives[i], energy_of(lives[i]), [&] { return_to_rest(lives[i]); });
       if (lives[i].living.body.springs.empty())
         lives[i].end(Status::invalid, "no springs");
       else
@@ -114,17 +119,8 @@ void DevelopmentLoop::simulate_cycle(std::span<Life> lives, int cycle, const Rec
     simulation_.run(lives, stretch, record);
 }
 
-template <class Action>
-void DevelopmentLoop::allow_energy(Life& life, const Action& action) const {
-  const auto energy = [&] { return total_energy(life.living.body, life.living.state, *life.scene); };
-  const double before = energy();
-  action();
-  life.living.state.start_energy += std::max(0.0, energy() - before);
-}
-
-template <class Action>
-void DevelopmentLoop::allow_growth(Life& life, const Action& action) const {
-  const ElasticEnergy energy(life.living.body, life.living.state);
+template <class Energy, class Action>
+void DevelopmentLoop::allow_energy(Life& life, const Energy& energy, const Action& action) const {
   const double before = energy();
   action();
   life.living.state.start_energy += std::max(0.0, energy() - before);
@@ -227,10 +223,10 @@ DevoContext DevelopmentLoop::context_of(const Life& life, int cycle, const Sched
 void DevelopmentLoop::make(Change change, Life& life) const {
   if (change.edits.empty()) return;
   const auto apply_it = [&] { apply(change.edits, life.living); };
-  if (only_grows(change.edits))
-    allow_growth(life, apply_it);
+  if (only_grows(change.edits))  // nothing but the elastic energy changes, and finding out how takes less time
+    allow_energy(life, ElasticEnergy(life.living.body, life.living.state), apply_it);
   else if (adds_energy(change))
-    allow_energy(life, apply_it);
+    allow_energy(life, energy_of(life), apply_it);
   else
     apply_it();
   life.result.record.add(change);

@@ -70,12 +70,9 @@ class DevelopmentLoop {
   /// together.
   void shuffle_records(Life& life, int cycle) const;
   /// Calls `action`, which changes a body, and raises the energy that the guard allows by the energy that the change
-  /// adds.
-  template <class Action>
-  void allow_energy(Life& life, const Action& action) const;
-  /// Does the same, in less time, if `action` changes nothing but rest lengths.
-  template <class Action>
-  void allow_growth(Life& life, const Action& action) const;
+  /// adds. `energy` returns that of the body (J), or the part of it that the change can change.
+  template <class Energy, class Action>
+  void allow_energy(Life& life, const Energy& energy, const Action& action) const;
   /// Moves a body back to its rest positions and sets its velocities to zero.
   void return_to_rest(Life& life) const;
   /// Returns the box around the positions at which the next cycle starts, cut off below at the height of the highest

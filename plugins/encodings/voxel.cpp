@@ -9,7 +9,7 @@ using evodevo::Material;
 /// Each voxel has one block of genes: its material, if `size_range` is above 0 its size, and if `phase_range` is above
 /// 0 the phase of its muscles, the last two at birth and at the end of development (Kriegman et al. 2017 and 2018; in
 /// the paper's words, "a start and end volume"). Voxels of air are absent. A spring that belongs to several voxels has
-/// the mean of their materials, sizes and phases, or each voxel has springs and masses of its own. The positions of the
+/// the mean of their materials, sizes and phases, or each voxel has springs of its own. The positions of the
 /// masses at birth are those of a lattice of equal voxels. If genes are mirrored, only the voxels of the half with the
 /// smaller x have them.
 class Voxel final : public evodevo::LatticeEncoding {
