@@ -26,6 +26,7 @@ struct LivingBody : SpringRecords, MassRecords {
   std::shared_ptr<const BodyVersion> version = nullptr;
   double longest_dt = 0;                                     ///< LongestStep::dt, s
   std::shared_ptr<const Preparation> preparation = nullptr;  ///< what the simulator reuses in the next cycle
+  std::shared_ptr<SplitBody> split = nullptr;                ///< likewise
 };
 
 /// Returns edits in the form in which they are applied and recorded. Removed masses and springs are in ascending order

@@ -82,6 +82,7 @@ Task LifeSimulation::task_for(Life& life, const Stretch& stretch) const {
   task.steps = pace.steps;
   task.scene = life.scene == &scene_ ? nullptr : life.scene;
   task.preparation = std::move(life.living.preparation);
+  task.split = std::move(life.living.split);
   for (const auto& [time, channels] : stretch.samples)
     task.sampled_at.push_back({std::min(pace.steps_to(time), pace.steps), channels});
   if (stretch.at_end().any()) task.sampled_at.push_back({pace.steps, stretch.at_end()});
@@ -105,6 +106,7 @@ void LifeSimulation::run(std::span<Life> lives, const Stretch& stretch, const Mo
     static_cast<SpringRecords&>(life.living) = std::move(static_cast<SpringRecords&>(task));
     static_cast<MassRecords&>(life.living) = {};
     life.living.preparation = std::move(task.preparation);
+    life.living.split = std::move(task.split);
     if (task.status == Status::ok)
       keep_samples(task, stretch, life);
     else

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 namespace evodevo {
 namespace {
@@ -54,11 +55,43 @@ std::unique_ptr<const Body> split_materials(const Body& body) {
   return split;
 }
 
-SplitMaterials::SplitMaterials(std::span<Task> tasks, Workers& workers) : tasks_(tasks), split_(tasks.size()) {
+SplitBody::SplitBody(const Body& given, Body split)
+    : split_(std::move(split)), given_materials_(given.materials), given_(split_.materials.size()) {
+  for (std::size_t i = 0; i < given.springs.size(); ++i)
+    given_[split_.springs[i].material] = {given.springs[i].material, given.springs[i].stiffness_factor};
+}
+
+std::shared_ptr<SplitBody> SplitBody::of(const Body& body, std::shared_ptr<SplitBody> earlier) {
+  // lives that are copies of each other may share one, which then stays as it is
+  if (earlier.use_count() == 1 && earlier->follow(body)) return earlier;
+  const std::unique_ptr<const Body> split = split_materials(body);
+  return split ? std::shared_ptr<SplitBody>(new SplitBody(body, *split)) : nullptr;
+}
+
+bool SplitBody::follow(const Body& body) {
+  const auto weighs = [](const Mass& now, const Mass& before) { return now.mass == before.mass; };
+  if (body.springs.size() != split_.springs.size() || body.materials != given_materials_ ||
+      !std::ranges::equal(body.masses, split_.masses, weighs))
+    return false;
+  for (std::size_t i = 0; i < body.springs.size(); ++i) {
+    const Spring& now = body.springs[i];
+    Spring& split = split_.springs[i];
+    const Given& given = given_[split.material];
+    if (now.a != split.a || now.b != split.b || now.material != given.material ||
+        now.stiffness_factor != given.stiffness_factor)
+      return false;
+    split.rest_length = now.rest_length;
+  }
+  split_.masses = body.masses;
+  return true;
+}
+
+SplitMaterials::SplitMaterials(std::span<Task> tasks, Workers& workers) : tasks_(tasks) {
   for (const Task& task : tasks) given_.push_back(task.body);
   workers.for_each(tasks.size(), [&](std::size_t i) {
-    split_[i] = split_materials(*given_[i]);
-    if (split_[i]) tasks_[i].body = split_[i].get();
+    Task& task = tasks_[i];
+    task.split = SplitBody::of(*given_[i], std::move(task.split));
+    if (task.split) task.body = &task.split->body();
   });
 }
 

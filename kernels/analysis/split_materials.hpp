@@ -2,6 +2,7 @@
 // material have the same stiffness and the same dashpot.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -17,6 +18,31 @@ namespace evodevo {
 /// if that is so already.
 std::unique_ptr<const Body> split_materials(const Body& body);
 
+/// The result of split_materials() for a body that changes, such as that of a life: it follows changes of lengths and
+/// places, which is much faster than another split.
+class SplitBody {
+ public:
+  /// Returns null if the springs of each material agree in the given body. `earlier`: the split body before the given
+  /// body changed, or null.
+  static std::shared_ptr<SplitBody> of(const Body& body, std::shared_ptr<SplitBody> earlier);
+
+  const Body& body() const { return split_; }
+
+ private:
+  /// Of which springs of the given body a material of the split body is.
+  struct Given {
+    std::uint32_t material = 0;
+    double stiffness_factor = 1;
+  };
+
+  SplitBody(const Body& given, Body split);
+  bool follow(const Body& body);
+
+  Body split_;
+  std::vector<Material> given_materials_;
+  std::vector<Given> given_;  ///< for each material of the split body
+};
+
 /// While this object exists, the springs of a material agree in all bodies of the tasks.
 class SplitMaterials {
  public:
@@ -28,7 +54,6 @@ class SplitMaterials {
  private:
   std::span<Task> tasks_;
   std::vector<const Body*> given_;
-  std::vector<std::unique_ptr<const Body>> split_;  ///< null where the given body needs no other
 };
 
 /// Returns the coefficient of the dashpot of each material of a body whose springs agree (N s/m), with the stiffness of

@@ -7,18 +7,10 @@
 #include <limits>
 #include <vector>
 
+#include "analysis/stiffness_bounds.hpp"
+
 namespace evodevo {
 namespace {
-
-/// What springs resist with: their stiffness, the coefficient of their dashpot, or a sum of both.
-struct Resistance {
-  double of_length = 1;  ///< factor of the stiffness k, N/m
-  double of_rate = 0;    ///< factor of the dashpot's coefficient c, N s/m
-
-  double operator()(const Body& body, const Spring& spring) const {
-    return of_length * body.stiffness(spring) + (of_rate != 0 ? of_rate * body.damping(spring) : 0);
-  }
-};
 
 bool is_damped(const Body& body) {
   // a look at the few materials saves one at the many springs
@@ -167,66 +159,6 @@ Eigenpair largest_eigenpair(const StiffnessMatrix& matrix, double enough) {
   return {margin * estimate.first, std::move(vector)};
 }
 
-/// Upper bounds of the largest eigenvalue of a StiffnessMatrix (1/s^2), which cost much less than the eigenvalue.
-class Bounds {
- public:
-  Bounds(const Body& body, std::span<const Vec3> positions, Resistance resistance)
-      : body_(body), positions_(positions) {
-    resistance_.reserve(body.springs.size());
-    for (const Spring& spring : body.springs) resistance_.push_back(resistance(body, spring));
-  }
-
-  /// The cheapest, by Gershgorin discs on blocks of one mass: the largest 2 sum(k)/m. NaN if a position is not finite.
-  double of_discs() const {
-    std::vector<double> sum(body_.masses.size());
-    for (std::size_t i = 0; i < resistance_.size(); ++i) {
-      sum[body_.springs[i].a] += resistance_[i];
-      sum[body_.springs[i].b] += resistance_[i];
-    }
-    double largest = 0, not_finite = 0;
-    for (std::size_t i = 0; i < sum.size(); ++i) {
-      if (body_.masses[i].mass > 0) largest = std::max(largest, 2 * sum[i] / body_.masses[i].mass);
-      not_finite += 0 * (positions_[i].x + positions_[i].y + positions_[i].z);
-    }
-    return largest + not_finite;
-  }
-
-  /// A smaller one. Because |xb - xa|^2 <= 2 |xa|^2 + 2 |xb|^2, the matrix is at most twice its diagonal blocks. The
-  /// bound is therefore twice the largest eigenvalue of the block of any mass. That of the discs is larger because it
-  /// ignores that springs have different directions. NaN if a position is not finite.
-  double of_blocks() const {
-    std::vector<Eigen::Matrix3d> block(body_.masses.size(), Eigen::Matrix3d::Zero());
-    for (std::size_t i = 0; i < resistance_.size(); ++i) {
-      const Spring& spring = body_.springs[i];
-      const Vec3 d = positions_[spring.b] - positions_[spring.a];
-      const double squared = dot(d, d);
-      // a spring without a direction is treated as resisting in every direction: an upper bound for any direction
-      const Eigen::Vector3d v(d.x, d.y, d.z);
-      const Eigen::Matrix3d k = squared != 0 ? Eigen::Matrix3d((resistance_[i] / squared * v) * v.transpose())
-                                             : Eigen::Matrix3d(resistance_[i] * Eigen::Matrix3d::Identity());
-      block[spring.a] += k;
-      block[spring.b] += k;
-    }
-    double largest = 0;
-    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-    for (std::size_t i = 0; i < block.size(); ++i) {
-      const double mass = body_.masses[i].mass;
-      // the trace is an upper bound that costs nothing
-      if (!(mass > 0) || 2 * block[i].trace() <= largest * mass) continue;
-      solver.computeDirect(block[i], Eigen::EigenvaluesOnly);
-      const double bound = 2 * solver.eigenvalues()[2] / mass;
-      if (std::isnan(bound)) return bound;
-      largest = std::max(largest, bound);
-    }
-    return largest;
-  }
-
- private:
-  const Body& body_;
-  std::span<const Vec3> positions_;
-  std::vector<double> resistance_;  ///< of each spring, N/m
-};
-
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The highest frequency among the springs that are muscles, Hz; 0 if there is none.
@@ -287,7 +219,8 @@ struct Limit {
 double largest_damped_dt(const Body& body, std::span<const Vec3> positions, const Limit& limit) {
   constexpr int looks = 10;
   constexpr double near_enough = 0.96;  // with the 1 % of the margin, 5 % below the true limit
-  double dt = limit.dt(Bounds(body, positions, {1, 0}).of_blocks(), Bounds(body, positions, {0, 1}).of_blocks());
+  double dt = limit.dt(StiffnessBounds(body, positions, {1, 0}).of_blocks(),
+                       StiffnessBounds(body, positions, {0, 1}).of_blocks());
   StiffnessMatrix matrix(body, positions);
   for (int i = 0; i < looks; ++i) {
     const auto [eigenvalue, vector] = largest_eigenpair(matrix.with(limit.at(dt)), infinity);
@@ -351,7 +284,7 @@ double largest_dt(const Body& body, std::span<const Vec3> positions, Method meth
   if (!is_explicit(method)) return wanted;
   const bool damped = is_damped(body);
   const Limit limit(method, damped);
-  const Bounds bounds(body, positions, limit.at(wanted));
+  const StiffnessBounds bounds(body, positions, limit.at(wanted));
   if (wanted * std::sqrt(bounds.of_discs()) <= limit.oscillation) return wanted;
   const double bound = bounds.of_blocks();
   if (bound == 0 || wanted * std::sqrt(bound) <= limit.oscillation) return wanted;
@@ -381,8 +314,8 @@ bool is_stable(const Body& body, std::span<const Vec3> positions, const Scene& s
   const Limit of_method(method, is_damped(body), uniform_damping(scene, method) * dt);
   const double limit = of_method.eigenvalue(dt);
   const Resistance resistance = of_method.at(dt);
-  const Bounds bounds(body, positions, resistance);
-  if (bounds.of_discs() <= limit || bounds.of_blocks() <= limit) return true;
+  const StiffnessBounds bounds(body, positions, resistance);
+  if (bounds.of_discs() <= limit || bounds.blocks_are_below(limit)) return true;
   StiffnessMatrix matrix(body, positions);
   return largest_eigenpair(matrix.with(resistance), limit).value <= limit;
 }

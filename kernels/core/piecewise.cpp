@@ -30,6 +30,7 @@ class Piecewise {
     piece.later_steps = whole_.later_steps + whole_.steps - done_ - piece.steps;
     piece.course = whole_.course;
     piece.preparation = std::move(whole_.preparation);
+    piece.split = std::move(whole_.split);
     for (std::size_t next = whole_.samples.size(); next < whole_.sampled_at.size(); ++next) {
       const auto& [step, channels] = whole_.sampled_at[next];
       if (step > done_ + piece.steps) break;
@@ -45,6 +46,7 @@ class Piecewise {
     whole_.reason = piece.reason;
     whole_.course = piece.course;
     whole_.preparation = std::move(piece.preparation);
+    whole_.split = std::move(piece.split);
     whole_.spring_evaluations += piece.spring_evaluations;
     done_ += piece.steps;
     if (piece.status != Status::ok) return whole_.samples.clear();

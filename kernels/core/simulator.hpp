@@ -80,6 +80,8 @@ struct SpringRecords {
   }
 };
 
+class SplitBody;
+
 /// Data on a body's masses and springs that a simulator has computed (on a GPU, their arrangement in memory) and can
 /// reuse as long as they do not change.
 class Preparation {
@@ -88,9 +90,9 @@ class Preparation {
 };
 
 /// One body of a batch, to be simulated for `steps` time steps of length `dt`. The caller sets `body`, `state`, `dt`,
-/// `steps` and, if needed, `later_steps`, `course`, `preparation`, `scene` and `sampled_at`; the simulator sets the
-/// rest. The records and samples are empty after a divergence. Records and samples change neither the motion nor each
-/// other, not even in the last bit.
+/// `steps` and, if needed, `later_steps`, `course`, `preparation`, `split`, `scene` and `sampled_at`; the simulator
+/// sets the rest. The records and samples are empty after a divergence. Records and samples change neither the motion
+/// nor each other, not even in the last bit.
 ///
 /// A run can be divided into pieces with the same body and dt: each piece except the last gives the number of
 /// `later_steps` that follow, and the caller passes its `course` to the next piece. State and status are then
@@ -106,6 +108,8 @@ struct Task : SpringRecords {
   /// In: the preparation from the body's last run, or null; out: that of this run. A preparation that no longer fits
   /// the body is ignored.
   std::shared_ptr<const Preparation> preparation;
+  /// The same for the body's materials, if a simulator has to split them (analysis/split_materials.hpp).
+  std::shared_ptr<SplitBody> split;
   const Scene* scene = nullptr;         ///< the scene of the body; null: that of the simulator
   std::vector<SamplePoint> sampled_at;  ///< in ascending order of their steps, from 0 to `steps`
 

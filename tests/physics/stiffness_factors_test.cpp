@@ -1,6 +1,12 @@
 // Springs whose stiffness differs from that of their material by a factor.
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <span>
+#include <tuple>
+#include <utility>
+#include <vector>
+
 #include "analysis/energy.hpp"
 #include "analysis/split_materials.hpp"
 #include "analysis/stability.hpp"
@@ -45,6 +51,62 @@ TEST(StiffnessFactors, BecomePartsOfMaterials) {
   }
   EXPECT_LE(plain->materials.size(), 21 * body.materials.size()) << "one for each pair of material and factor";
   EXPECT_EQ(split_materials(*plain), nullptr);
+}
+
+/// Whether SplitBody::of() gives the same as split_materials() for each of these forms of a body, one after the other.
+void expect_split_to_follow(std::span<const Body> forms) {
+  std::shared_ptr<SplitBody> split;
+  for (const Body& body : forms) {
+    split = SplitBody::of(body, std::move(split));
+    const auto anew = split_materials(body);
+    ASSERT_EQ(split == nullptr, anew == nullptr);
+    if (!split) continue;
+    const Body& kept = split->body();
+    ASSERT_EQ(kept.springs.size(), anew->springs.size());
+    for (std::size_t i = 0; i < kept.springs.size(); ++i) {
+      const Spring &one = kept.springs[i], &other = anew->springs[i];
+      EXPECT_EQ(std::tie(one.a, one.b, one.rest_length, one.stiffness_factor),
+                std::tie(other.a, other.b, other.rest_length, other.stiffness_factor));
+      EXPECT_EQ(kept.materials[one.material], anew->materials[other.material]) << i;
+    }
+    for (std::size_t i = 0; i < kept.masses.size(); ++i) {
+      EXPECT_EQ(kept.masses[i].rest, body.masses[i].rest);
+      EXPECT_EQ(kept.masses[i].mass, body.masses[i].mass);
+    }
+  }
+}
+
+TEST(StiffnessFactors, StayPartsOfMaterialsWhileABodyChanges) {
+  std::vector<Body> forms(8, varied_body());
+  for (Material& material : forms[0].materials) material.damping = 0.3;
+  for (std::size_t i = 1; i < forms.size(); ++i) {
+    forms[i] = forms[i - 1];
+    Body& body = forms[i];
+    if (i == 1) body.springs[7].rest_length *= 1.37;
+    if (i == 2) body.masses[5].mass *= 1.7;  // changes the dashpots of its springs
+    if (i == 3) body.materials[1].phase += 0.7;
+    if (i == 4) body.springs[9].stiffness_factor *= 1.3;
+    if (i == 5) body.springs[11].material = (body.springs[11].material + 1) % body.materials.size();
+    if (i == 6) body.springs.pop_back();
+    if (i == 7) body.masses[3].rest.x += 0.1;
+  }
+  expect_split_to_follow(forms);
+}
+
+TEST(StiffnessFactors, EndToBePartsOfMaterialsWithThem) {
+  Body plain = varied_body();
+  for (Spring& spring : plain.springs) spring.stiffness_factor = 1;
+  expect_split_to_follow(std::vector<Body>{varied_body(), plain, varied_body()});
+}
+
+TEST(StiffnessFactors, OfCopiedLivesFollowEachLife) {
+  const Body body = varied_body();
+  const auto shared = SplitBody::of(body, nullptr);
+  Body longer = body;
+  longer.springs[0].rest_length *= 1.1;
+  const auto own = SplitBody::of(longer, shared);
+  EXPECT_EQ(own->body().springs[0].rest_length, longer.springs[0].rest_length);
+  EXPECT_EQ(shared->body().springs[0].rest_length, body.springs[0].rest_length) << "that of the other life";
 }
 
 TEST(StiffnessFactors, CountInEnergyAndTimeStep) {

@@ -31,6 +31,12 @@ constexpr std::size_t most_batches_at_once = 16;
 // share of the free memory that is used; other programs may need some too
 constexpr double share_of_memory = 0.8;
 
+std::uint64_t most_steps(std::span<Task* const> tasks) {
+  std::uint64_t most = 0;
+  for (const Task* task : tasks) most = std::max(most, task->steps);
+  return most;
+}
+
 /// What the simulators on several equal GPUs have in common.
 struct Common {
   Common(const cuda::Device& device, int threads)
@@ -68,7 +74,7 @@ class DeviceSimulator final : public CudaSimulator {
                         clusters_.blocks_for(bodies, *common_.kernels),
                         cuda::divided(bodies, device_.multiprocessors)};
     std::get<cuda::DeviceResources::Batches<T>>(resources_->coalescers)
-        .run(cuda::Kind(run), plan(live, run), [&](std::span<cuda::Plan<T>> batch) { simulate(batch, run); });
+        .run(cuda::Kind(run, most_steps(live)), plan(live, run), [&](std::span<cuda::Plan<T>> batch) { simulate(batch, run); });
   }
 
   NeighbourSearch& neighbours() override { return *neighbours_; }

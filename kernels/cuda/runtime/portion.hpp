@@ -12,6 +12,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <deque>
 #include <map>
 #include <span>
@@ -39,15 +40,21 @@ struct Run {
   unsigned largest_cluster, wanted_blocks, at_once;  ///< as in Room
 };
 
-/// What bodies of different runs must have in common to be simulated together.
+/// What bodies of different runs must have in common to be simulated together. They all wait for the one with the most
+/// steps, so the number of steps is among it, to a factor of two.
 struct Kind {
-  explicit Kind(const Run& run)
-      : method(run.stepping.method), recording(run.recording), spans_per_range(run.spans_per_range) {}
+  /// `steps`: the largest number of any body.
+  Kind(const Run& run, std::uint64_t steps)
+      : method(run.stepping.method),
+        recording(run.recording),
+        spans_per_range(run.spans_per_range),
+        length(std::bit_width(steps)) {}
   auto operator<=>(const Kind&) const = default;
 
   Method method;
   Recording recording;
   std::uint64_t spans_per_range;
+  int length;
 };
 
 /// A task, whose course has begun, and the layout in which its body is simulated. The scene of the run must outlive it.

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/split_materials.hpp"
 #include "base/philox.hpp"
 #include "cpu/simulator.hpp"
 #include "cuda/layout/features.hpp"
@@ -79,11 +80,14 @@ class HostSide final : public Simulator {
 
   const Stage& search() const { return search_.stage; }
 
-  Stage begin{"bounds of energy and forces"}, arrange{"arranging a body"}, rearrange{"arranging a changed body"},
-      pack{"packing"}, unpack{"unpacking"};
+  Stage splitting{"splitting materials"}, begin{"bounds of energy and forces"}, arrange{"arranging a body"},
+      rearrange{"arranging a changed body"}, pack{"packing"}, unpack{"unpacking"};
 
  private:
   void prepare_and_read(Task& task, Recording recording) {
+    const Body* const given = task.body;
+    task.split = splitting.measured([&] { return SplitBody::of(*given, std::move(task.split)); });
+    if (task.split) task.body = &task.split->body();
     const Scene& scene = task.scene ? *task.scene : scene_;
     task.course = begin.measured([&] {
       Course course = course_of(task, scene, stepping_.precision);
@@ -106,6 +110,7 @@ class HostSide final : public Simulator {
     auto* const sums = reinterpret_cast<double*>(host.sums);
     for (std::size_t i = 0; i < sizes.sums / sizeof(double); ++i) sums[i] = random_.uniform(0, 1);
     unpack.measured([&] { plan->unpack(host, recording, task); });
+    task.body = given;
   }
 
   Scene scene_;
@@ -143,7 +148,8 @@ Report host_work(const Settings& settings) {
   };
   add({"making a body from a genome", newborns.size(), times.decode - host.search().seconds});
   add({host.search().name, newborns.size(), host.search().seconds});
-  for (const Stage* stage : {&host.begin, &host.arrange, &host.rearrange, &host.pack, &host.unpack}) add(*stage);
+  for (const Stage* stage : {&host.splitting, &host.begin, &host.arrange, &host.rearrange, &host.pack, &host.unpack})
+    add(*stage);
   add({"developing a body", host.pack.times, times.develop});
   add({whole.name, newborns.size(), whole.seconds});
   return {{"study", "What the host does for robots on a GPU"},
