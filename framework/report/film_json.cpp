@@ -29,7 +29,8 @@ struct Detail {
 // is kept, a muscle's period of one second has about four frames.
 constexpr Detail details[] = {{8192, 255, 4}, {2048, 63, 16}, {1024, 15, std::numeric_limits<std::size_t>::max()}};
 
-/// Assigns numbers to springs by the masses that they join. A spring keeps its number throughout the film.
+/// Assigns numbers to springs by the masses that they join and, if springs act in parallel, by their order among those
+/// of the same two masses. A spring keeps its number throughout the film.
 class SpringNumbers {
  public:
   /// The springs of a shot.
@@ -47,9 +48,15 @@ class SpringNumbers {
   std::size_t count() const { return numbers_.size(); }
 
  private:
+  using Pair = std::pair<std::uint32_t, std::uint32_t>;  // of masses
+
   Present present(const Shot& shot) {
     std::vector<std::pair<std::uint32_t, std::size_t>> springs;
-    for (const Spring& spring : shot.body.springs) springs.emplace_back(number(shot, spring), springs.size());
+    std::map<Pair, std::uint32_t> parallel;  // the springs so far that join two masses
+    for (const Spring& spring : shot.body.springs) {
+      const Pair pair = std::minmax(shot.numbers.at(spring.a), shot.numbers.at(spring.b));
+      springs.emplace_back(number(pair, parallel[pair]++), springs.size());
+    }
     std::ranges::sort(springs);
     Present present;
     for (const auto& [number, index] : springs) {
@@ -59,14 +66,14 @@ class SpringNumbers {
     return present;
   }
 
-  std::uint32_t number(const Shot& shot, const Spring& spring) {
-    const auto pair = std::minmax(shot.numbers.at(spring.a), shot.numbers.at(spring.b));
-    const auto [found, is_new] = numbers_.try_emplace(pair, static_cast<std::uint32_t>(numbers_.size()));
+  std::uint32_t number(const Pair& pair, std::uint32_t order) {
+    const auto next = static_cast<std::uint32_t>(numbers_.size());
+    const auto [found, is_new] = numbers_.try_emplace({pair, order}, next);
     if (is_new) ends_.insert(ends_.end(), {pair.first, pair.second});
     return found->second;
   }
 
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> numbers_;
+  std::map<std::pair<Pair, std::uint32_t>, std::uint32_t> numbers_;
   std::vector<std::int64_t> ends_;
   std::vector<Present> shots_;
 };

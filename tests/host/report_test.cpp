@@ -260,6 +260,19 @@ TEST(FilmJson, KnowsMassesAndSpringsAgainAfterEdits) {
   EXPECT_THAT(unpacked(json["shots"][1]["springs"]), ElementsAre(0, 2));
 }
 
+TEST(FilmJson, TellsParallelSpringsApart) {
+  Shot before = shot_of({0, 1, 2}, {0, 1, 2}, {{0, 1}, {1, 2}, {1, 0}}), after = before;
+  before.body.materials.push_back({.stiffness = 2});
+  before.body.springs[2].material = 1;
+  after.body.springs.pop_back();
+  after.stress.pop_back();
+  const auto json = film_json({before, after}, {{"before"}, {"after"}}, 1000);
+  EXPECT_THAT(unpacked(json["ends"]), ElementsAre(0, 1, 1, 2, 0, 1));
+  EXPECT_THAT(unpacked(json["shots"][0]["springs"]), ElementsAre(0, 1, 1));
+  EXPECT_THAT(unpacked(json["shots"][0]["materials"]), ElementsAre(0, 0, 1));
+  EXPECT_THAT(unpacked(json["shots"][1]["springs"]), ElementsAre(2)) << "the one that is gone";
+}
+
 TEST(FilmJson, KnowsTheRestLengthsOfEachShot) {
   Shot before = shot_of({0, 1, 2}, {0, 1, 2}, {{0, 1}, {1, 2}}), after = before;
   before.body.springs[0].rest_length = 0.7;

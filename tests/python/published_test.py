@@ -1,6 +1,9 @@
-"""Tests the analyses of experiments/published: the lives that they let robots live again are those of the runs."""
+"""Tests the analyses of experiments/published: the lives that they let robots live again are those of the runs, and runs
+are compared at equal numbers of generations."""
 
+import contextlib
 import importlib.util
+import io
 import sys
 import tempfile
 import unittest
@@ -15,19 +18,27 @@ if importlib.util.find_spec("evodevo.core") is None:
     sys.exit(77)
 
 FOLDER = ROOT / "experiments/published/kriegman-2018"
-spec = importlib.util.spec_from_file_location("analyses", FOLDER / "analyses.py")
-analyses = importlib.util.module_from_spec(spec)
-spec.loader.exec_module(analyses)
+
+
+def script(name):
+    spec = importlib.util.spec_from_file_location(name, FOLDER / f"{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+analyses, progress = script("analyses"), script("progress")
 
 SHORT = ["experiment.evaluations=24", "experiment.population=8", "fitness.0.settle=0.5", "fitness.0.window=0.75"]
 SHORT_DEVELOPMENT = ["development.cycles=5"]
 
 
-def make_run(name, folder):
-    """Makes a short run of an experiment in folder/runs, as tools/compare does, and returns its folder."""
+def make_run(name, folder, *more):
+    """Makes a short run of an experiment in folder/runs, as tools/compare does, and returns its folder. `more`: settings
+    of this run alone."""
     out = Path(folder, "runs", name, "seed-1")
     out.parent.mkdir(parents=True, exist_ok=True)
-    settings = SHORT + (SHORT_DEVELOPMENT if name == "evo-devo" else [])
+    settings = [*SHORT, *(SHORT_DEVELOPMENT if name == "evo-devo" else []), *more]
     evodevo("run", FOLDER / f"{name}.toml", "--out", out, "--device", "cpu", "--no-report", "--quiet",
             *(word for setting in settings for word in ("--set", setting)))
     return out
@@ -68,6 +79,21 @@ class Lives(unittest.TestCase):
                 changed = table[genes.mutant(run.genome(3), kind, np.random.default_rng(2)) != run.genome(3)]
                 self.assertEqual(set(changed["gene"]), {f"{kind} at birth", f"{kind} at the end"})
                 self.assertEqual(changed["block"].nunique(), 1)
+
+
+class Progress(unittest.TestCase):
+    def test_compares_runs_after_equal_numbers_of_generations(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            best = {}
+            for name, more in (("evo", ["experiment.children=4"]), ("evo-devo", ["experiment.children=8"])):
+                best[name] = progress.evodevo.Run(make_run(name, scratch, *more)).generations["best"].to_list()
+            self.assertEqual([*map(len, best.values())], [6, 3])
+            text = io.StringIO()
+            with contextlib.redirect_stdout(text):
+                progress.report(progress.histories_of(Path(scratch)))
+        medians = (progress.standings.number(max(of_arm[:3])) for of_arm in best.values())
+        self.assertIn(f"| 3 | {' | '.join(medians)} |", text.getvalue())
+        self.assertIn("evo: 1 runs of 6 to 6 generations, 0 robots failed, 24 lives", text.getvalue())
 
 
 if __name__ == "__main__":

@@ -124,6 +124,28 @@ test("S covers and uncovers", async () => {
   assert.equal(await skinBox(page).isChecked(), false);
 });
 
+test("a skin covers voxels whose springs act in parallel to those of their neighbours", async () => {
+  const [run, file] = [scratch.path("parallel"), scratch.path("parallel.html")];
+  const settings = ["encoding={name='voxel', size=[3, 2, 2], edge=0.11, springs='own'}", "simulation.dt='auto'", "experiment.evaluations=12", "experiment.verify=0"];
+  evodevo("run", scratch.file, "--out", run, ...settings.flatMap((setting) => ["--set", setting]));
+  evodevo("report", run, "--best", "1", "--out", file);
+  const tab = await opened(browser, file);
+  await skinBox(tab).check();
+  const { voxels, springs, drawn, faces } = await inPage(tab, ({ viewer }) => {
+    const [stage] = viewer.stages;
+    viewer.seek(0);
+    viewer.draw();
+    const { voxels, shots } = stage.life;
+    const drawn = stage.springs.getAttribute("position").count / 4;
+    return { voxels: voxels.length, springs: shots[0].springs.length, drawn, faces: stage.skin.getAttribute("position").count / 4 };
+  });
+  assert.ok(voxels > 0 && springs === 28 * voxels, `${voxels} voxels of ${springs} springs`);
+  assert.equal(drawn, 0, "springs that faces cover are drawn");
+  assert.ok(faces >= 6 && faces <= 32, `${faces} faces`);
+  assert.deepEqual(tab.complaints, []);
+  await tab.close();
+});
+
 test("a network has no skin to switch on", async () => {
   const [run, file] = [scratch.path("network"), scratch.path("network.html")];
   evodevo("run", scratch.file, "--out", run, "--set", "experiment.verify=0");

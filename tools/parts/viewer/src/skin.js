@@ -1,11 +1,12 @@
 // The skin of a body of voxels: their outer faces.
 
 const bits = [0, 1, 2, 3, 4, 5, 6, 7]; // of a corner: 1, 2 and 4 say on which side along x, y and z it is
-const most = 28; // springs of a voxel: every pair of its corners
+const most = 28; // pairs of corners of a voxel
 
 /** Returns the voxels of a life: cubes of eight masses whose four body diagonals are springs at birth. Only these springs
- *  belong to one voxel alone. Each voxel has its `corners`, masses in the order of `bits`; the springs that ever join two
- *  of them; the diagonals `inside`; and the indices of its `neighbours`, two for each axis, -1 where there is none. */
+ *  belong to one voxel alone. Each voxel has its `corners`, masses in the order of `bits`; the `springs` that ever join two
+ *  of them, in a list for each pair, since springs may act in parallel; the diagonals `inside`; and the indices of its
+ *  `neighbours`, two for each axis, -1 where there is none. */
 export function voxelsOf(life) {
   const shot = life.shots.find(({ springs }) => springs.length > 0);
   if (!shot) return [];
@@ -22,7 +23,7 @@ export function voxelsOf(life) {
     const key = keyOf(low);
     inside.set(key, [...(inside.get(key) ?? []), spring]);
   }
-  const springOf = springsByEnds(life);
+  const springsOf = springsByEnds(life);
   const voxels = [...inside]
     .map(([key, springs]) => ({ key, at: key.split(",").map(Number), inside: springs }))
     .map((one) => ({ ...one, corners: bits.map((corner) => massAt.get(moved(one.at, corner).join())) }))
@@ -31,7 +32,7 @@ export function voxelsOf(life) {
   return voxels.map(({ at, inside: own, corners }) => ({
     corners,
     inside: own,
-    springs: corners.flatMap((a, i) => corners.slice(0, i).map((b) => springOf(a, b))).filter((spring) => spring !== undefined),
+    springs: corners.flatMap((a, i) => corners.slice(0, i).map((b) => springsOf(a, b))).filter((parallel) => parallel.length > 0),
     neighbours: [0, 1, 2].flatMap((axis) => [-1, 1].map((by) => indexOf.get(at.map((x, k) => (k === axis ? x + by : x)).join()) ?? -1)),
   }));
 }
@@ -48,34 +49,39 @@ function diagonal(life, placeOf, spring) {
 
 const moved = (at, corner) => at.map((x, axis) => x + ((corner >> axis) & 1));
 
-/** Returns a function that finds a spring by the masses that it joins. */
+/** Returns a function that finds springs by the masses that they join. */
 function springsByEnds({ ends, massCount }) {
   const key = (a, b) => Math.min(a, b) * massCount + Math.max(a, b);
   const springs = new Map();
-  for (let spring = 0; 2 * spring < ends.length; ++spring) springs.set(key(ends[2 * spring], ends[2 * spring + 1]), spring);
-  return (a, b) => springs.get(key(a, b));
+  for (let spring = 0; 2 * spring < ends.length; ++spring) {
+    const pair = key(ends[2 * spring], ends[2 * spring + 1]);
+    springs.set(pair, [...(springs.get(pair) ?? []), spring]);
+  }
+  return (a, b) => springs.get(key(a, b)) ?? [];
 }
 
 /** Returns the skin in a shot: the four corners of each face, going round it, and its colour; and for each spring of the
- *  life whether it is `covered` by a voxel. A voxel is there as long as its masses are, and more than half of its springs.
- *  Its faces have the mean colour of the diagonals inside it or, if these are gone, of its other springs. */
+ *  life whether it is `covered` by a voxel. A voxel is there as long as its masses are, and springs join more than half
+ *  of its pairs of corners. Its faces have the mean colour of the diagonals inside it or, if these are gone, of its other
+ *  springs. */
 export function skinOf(life, shot, colourOf) {
   const placeOf = new Int32Array(life.ends.length / 2).fill(-1);
   shot.springs.forEach((spring, i) => (placeOf[spring] = i));
   const isThere = new Uint8Array(life.massCount);
   shot.masses.forEach((mass) => (isThere[mass] = 1));
   const present = (springs) => springs.filter((spring) => placeOf[spring] >= 0);
+  const joined = (springs) => springs.filter((parallel) => present(parallel).length > 0).length;
   const shown = life.voxels.map(
-    ({ corners, springs }) => 2 * present(springs).length > most && corners.every((mass) => isThere[mass]),
+    ({ corners, springs }) => 2 * joined(springs) > most && corners.every((mass) => isThere[mass]),
   );
   const skin = { corners: [], colours: [], covered: new Uint8Array(placeOf.length) };
   life.voxels.forEach((voxel, i) => {
     if (!shown[i]) return;
-    for (const spring of voxel.springs) skin.covered[spring] = 1;
+    for (const spring of voxel.springs.flat()) skin.covered[spring] = 1;
     const open = sides.filter((_, side) => !shown[voxel.neighbours[side]]);
     if (open.length === 0) return;
     const inside = present(voxel.inside);
-    const colour = meanOf((inside.length > 0 ? inside : present(voxel.springs)).map((spring) => colourOf(shot, placeOf[spring])));
+    const colour = meanOf((inside.length > 0 ? inside : present(voxel.springs.flat())).map((spring) => colourOf(shot, placeOf[spring])));
     for (const side of open) {
       skin.corners.push(...side.map((corner) => voxel.corners[corner]));
       skin.colours.push(...colour);

@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+"""Compares the runs of the experiments in this folder at equal numbers of generations, even if they are not complete.
+
+  export PYTHONPATH=build/cpu/lib/python3.11/site-packages
+  python3 experiments/published/kriegman-2018/progress.py runs/kriegman-2018 --figure medians.svg
+
+Prints the median of the best distances so far, with its interval, after some generations and after the last one that
+every run has reached. There it tests the difference, as tools/compare does for complete runs. Prints how many robots
+failed, and the time that the runs took.
+
+Needs evodevo's Python package (tools/python/README.md), SciPy, and Matplotlib for the figure.
+"""
+
+import argparse
+import dataclasses
+import pathlib
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+sys.path.append(str(ROOT / "tools/parts"))
+
+try:
+    import evodevo
+    from compare import history, standings
+except ImportError as error:
+    sys.exit(f"progress: {error}; this needs SciPy, and evodevo's Python package in PYTHONPATH: see "
+             "tools/python/README.md")
+
+GENERATIONS = [100, 300, 1000, 2000, 3000]
+DISTANCE = history.Quantity("distance", "body lengths", maximise=True)
+
+
+@dataclasses.dataclass(frozen=True)
+class Arm:
+    """One of the experiments, as the reports of tools/compare name it."""
+
+    name: str
+
+    @property
+    def label(self):
+        return self.name
+
+
+def history_of(folder):
+    """Returns the history of a run, in which generation 0 counts as the first."""
+    table = evodevo.Run(folder).generations.reset_index()
+    generations = [row | {"map": None} for row in table.to_dict("records")]
+    return history.history({"generations": generations, "best": None, "map": None}, DISTANCE)
+
+
+def histories_of(folder):
+    """Returns a dictionary from experiments to the histories of their runs."""
+    histories = {}
+    for file in sorted(folder.glob("runs/*/seed-*/run.sqlite")):
+        histories.setdefault(Arm(file.parts[-3]), []).append(history_of(file.parent))
+    return histories
+
+
+def report(histories):
+    """Prints the tables."""
+    last = min(run.generations[-1] for runs in histories.values() for run in runs)
+    rows = []
+    for generation in [*(some for some in GENERATIONS if some < last), last]:
+        best = ([run.at("generations", generation, "best") for run in runs] for runs in histories.values())
+        rows.append([str(generation), *map(standings.median_with_interval, best)])
+    print(standings.table(["generation", *(f"`{arm.name}`" for arm in histories)], rows))
+    if len(histories) > 1:
+        print(standings.comparison(histories, DISTANCE, "generations", last, next(iter(histories)).name))
+    for arm, runs in histories.items():
+        reached = [run.generations[-1] for run in runs]
+        failed = sum(run.diverged[-1] + run.invalid[-1] for run in runs)
+        print(f"{arm.name}: {len(runs)} runs of {min(reached)} to {max(reached)} generations, {failed} robots failed, "
+              f"{sum(run.evaluations[-1] for run in runs)} lives, "
+              f"{sum(run.spring_evaluations[-1] for run in runs):.3g} spring evaluations, "
+              f"{sum(run.seconds[-1] for run in runs) / 3600:.1f} hours of runs side by side")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=pathlib.Path, help="of the comparison, that is, --out of tools/compare")
+    parser.add_argument("--figure", type=pathlib.Path, help="draw the medians over evaluations into this SVG or PNG")
+    arguments = parser.parse_args()
+    histories = histories_of(arguments.folder)
+    if not histories:
+        sys.exit(f"{arguments.folder}: has no runs; give the folder that tools/compare wrote, which holds runs/")
+    report(histories)
+    if arguments.figure:
+        from common import charts
+        from compare import chart
+
+        title = f"best distance so far (body lengths), {chart.drawn(histories)}"
+        charts.save(chart.figure(histories, [(DISTANCE, "evaluations")], title), arguments.figure)
+
+
+if __name__ == "__main__":
+    main()
