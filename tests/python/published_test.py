@@ -60,7 +60,7 @@ class Lives(unittest.TestCase):
         for name in ("evo", "evo-devo"):
             with self.subTest(name), tempfile.TemporaryDirectory() as scratch:
                 rows = analyses.lives_of_champion(make_run(name, scratch), 2)
-                lives = {life: distance for _, _, _, life, distance, _ in rows}
+                lives = {life: distance for _, _, _, life, distance, *_ in rows}
                 # in steps of the same length, but with the length of a spring rounded in another way
                 self.assertAlmostEqual(lives["as it is"], lives["in the run"], places=4)
                 self.assertGreater(lives["in the run"], 0.01)
@@ -70,6 +70,19 @@ class Lives(unittest.TestCase):
                 else:
                     self.assertEqual(len({lives["as it is"], *frozen}), 4)
                 self.assertEqual(len(rows), 1 + 1 + 3 + 2 * 2)
+
+    def test_change_as_their_genes_say(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            run = analyses.evodevo.Run(make_run("evo-devo", scratch))
+            genes, own, table = analyses.Genes(run, 3), run.genome(3), run.genes(3)
+            random = [genes.change(run.genome(i), kind) for i in run.individuals.index for kind in ("size", "phase")]
+            self.assertAlmostEqual(np.mean(random), 1 / 3, delta=0.03)
+            for kind, range_of_genes in (("size", 1.5), ("phase", 2.0)):
+                at_birth, at_the_end = (table[table["gene"] == f"{kind} {when}"]["value"].to_numpy()
+                                        for when in ("at birth", "at the end"))
+                self.assertAlmostEqual(genes.change(own, kind), np.mean(np.abs(at_the_end - at_birth)) / range_of_genes,
+                                       places=5)
+                self.assertEqual(genes.change(genes.at(own, 0.5), kind), 0)
 
     def test_mutants_differ_in_one_voxel(self):
         with tempfile.TemporaryDirectory() as scratch:

@@ -7,8 +7,9 @@
 
 Lets the best robot of each run live again, also with its development removed, that is, with the sizes and phases that it
 has at birth, in midlife or at death; lets mutants of it live, in each of which one voxel has new random sizes (body) or
-new random phases (control); and counts who rolls. Prints medians with their intervals, and writes every life to
-analyses.csv in the folder. tools/compare itself draws medians over generations and tests the difference at the end.
+new random phases (control); measures by how much sizes and phases change over a life; and counts who rolls. Prints
+medians with their intervals, and writes every life to analyses.csv in the folder. tools/compare itself draws medians
+over generations and tests the difference at the end.
 
 Needs evodevo's Python package with its compiled module (tools/python/README.md), and SciPy.
 """
@@ -36,7 +37,7 @@ except ImportError as error:
 STEP = 0.05  # s; how often rotations are measured, of which a cycle of development has a whole number
 TURN = 2 * np.pi
 MOMENTS = {"at birth": 0.0, "in midlife": 0.5, "at death": 1.0}  # progress of development
-COLUMNS = ["experiment", "seed", "individual", "life", "distance", "turns"]
+COLUMNS = ["experiment", "seed", "individual", "life", "distance", "turns", "change_of_sizes", "change_of_phases"]
 
 
 class Genes:
@@ -61,6 +62,13 @@ class Genes:
         for birth, end in self._of.values():
             still[birth] = still[end] = genes[birth] + progress * (genes[end] - genes[birth])
         return still
+
+    def change(self, genes, kind):
+        """Returns by how much the sizes or phases of a robot change over its life: their mean absolute change, relative
+        to the range that genes have. That of random genes is a third; that of robots which have assimilated what
+        develops is 0."""
+        birth, end = self._of[kind]
+        return float(np.mean(np.abs(genes[end] - genes[birth]) / (self.high - self.low)[birth]))
 
     def mutant(self, genes, kind, random):
         """Returns a copy of genes in which one voxel has new random sizes or phases."""
@@ -160,8 +168,9 @@ def lives_of_champion(folder, mutants):
     who = run.record["name"], int(run.record["seed"]), champion
     in_run = run.individuals.loc[champion, run.objective_columns[0]]
     lived = live(experiment, genes, [values for _, values in lives])
-    return [(*who, "in the run", in_run, np.nan),
-            *((*who, life, lived[i].distance, lived[i].turns) for i, (life, _) in enumerate(lives))]
+    changes = genes.change(own, "size"), genes.change(own, "phase")
+    return [(*who, "in the run", in_run, np.nan, *changes),
+            *((*who, life, lived[i].distance, lived[i].turns, np.nan, np.nan) for i, (life, _) in enumerate(lives))]
 
 
 def text(values):
@@ -178,6 +187,9 @@ def report(table):
         for life, lived in rows.groupby("life", sort=False):
             champions = lived.groupby("seed")["distance"]
             print(f"  {life:16} {text(champions.median())} body lengths")
+        for kind in ("sizes", "phases"):
+            changes = rows[f"change_of_{kind}"].dropna()
+            print(f"  change of {kind} over a life: {text(changes)} of their range; that of random genes is 1/3")
 
 
 def main():

@@ -88,8 +88,9 @@ def main():
         from common import charts
         from compare import chart
 
-        title = f"best distance so far (body lengths), {chart.drawn(histories)}"
-        charts.save(chart.figure(histories, [(DISTANCE, "evaluations")], title), arguments.figure)
+        page = chart.figure(histories, [(DISTANCE, "evaluations")], "best distance so far", chart.drawn(histories))
+        page.axes[0].set_ylabel(DISTANCE.unit)
+        charts.save(page, arguments.figure)
 
 
 if __name__ == "__main__":
