@@ -99,6 +99,20 @@ TEST(StiffnessFactors, EndToBePartsOfMaterialsWithThem) {
   expect_split_to_follow(std::vector<Body>{varied_body(), plain, varied_body()});
 }
 
+TEST(StiffnessFactors, AreNotSplitAgainIfOnlyLengthsChange) {
+  const Body body = varied_body();
+  Body longer = body, heavier = body;
+  longer.springs[0].rest_length *= 1.1;
+  heavier.masses[0].mass *= 1.1;
+  auto split = SplitBody::of(body, nullptr);
+  const SplitBody* const first = split.get();
+  const std::weak_ptr<SplitBody> observed = split;
+  split = SplitBody::of(longer, std::move(split));
+  EXPECT_EQ(split.get(), first);
+  split = SplitBody::of(heavier, std::move(split));
+  EXPECT_TRUE(observed.expired());
+}
+
 TEST(StiffnessFactors, OfCopiedLivesFollowEachLife) {
   const Body body = varied_body();
   const auto shared = SplitBody::of(body, nullptr);

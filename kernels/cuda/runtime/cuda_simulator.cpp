@@ -74,7 +74,8 @@ class DeviceSimulator final : public CudaSimulator {
                         clusters_.blocks_for(bodies, *common_.kernels),
                         cuda::divided(bodies, device_.multiprocessors)};
     std::get<cuda::DeviceResources::Batches<T>>(resources_->coalescers)
-        .run(cuda::Kind(run, most_steps(live)), plan(live, run), [&](std::span<cuda::Plan<T>> batch) { simulate(batch, run); });
+        .run(cuda::Kind(run, most_steps(live)), plan(live, run),
+             [&](std::span<cuda::Plan<T>> batch) { simulate(batch, run); });
   }
 
   NeighbourSearch& neighbours() override { return *neighbours_; }
