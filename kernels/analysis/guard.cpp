@@ -77,7 +77,8 @@ double exit_allowance(const Body& body, const State& state, const Scene& scene, 
     if (depth[i] > 0)
       sum += body.masses[i].mass * (0.5 * std::pow(physics::lowest_rise(-depth[i], dt), 2) + g * depth[i]);
   }
-  if (std::ranges::count(depth, 0.0) == std::ssize(depth)) return 0;  // as in most cases; this saves a look at springs
+  const auto is_outside = [](double below) { return below == 0; };
+  if (std::ranges::all_of(depth, is_outside)) return 0;  // as in most cases; this saves a look at the springs
   for (const Spring& spring : body.springs)
     sum += 0.5 * body.stiffness(spring) * std::pow(std::max(depth[spring.a], depth[spring.b]), 2);
   return sum;

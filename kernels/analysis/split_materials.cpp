@@ -32,7 +32,7 @@ bool agree(const Body& body) {
 
 }  // namespace
 
-std::unique_ptr<const Body> split_materials(const Body& body) {
+std::unique_ptr<Body> split_materials(const Body& body) {
   if (agree(body)) return nullptr;
   auto split = std::make_unique<Body>(body);
   std::vector<bool> taken(body.materials.size());  // whether a material's own number belongs to a combination
@@ -64,8 +64,8 @@ SplitBody::SplitBody(const Body& given, Body split)
 std::shared_ptr<SplitBody> SplitBody::of(const Body& body, std::shared_ptr<SplitBody> earlier) {
   // lives that are copies of each other may share one, which then stays as it is
   if (earlier.use_count() == 1 && earlier->follow(body)) return earlier;
-  const std::unique_ptr<const Body> split = split_materials(body);
-  return split ? std::shared_ptr<SplitBody>(new SplitBody(body, *split)) : nullptr;
+  const std::unique_ptr<Body> split = split_materials(body);
+  return split ? std::shared_ptr<SplitBody>(new SplitBody(body, std::move(*split))) : nullptr;
 }
 
 bool SplitBody::follow(const Body& body) {

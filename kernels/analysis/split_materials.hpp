@@ -16,7 +16,7 @@ namespace evodevo {
 /// Returns the same body without stiffness factors and with a further material for each combination of a material, a
 /// stiffness factor and a coefficient of the dashpot, so that all springs of a material agree in these. Returns nothing
 /// if that is so already.
-std::unique_ptr<const Body> split_materials(const Body& body);
+std::unique_ptr<Body> split_materials(const Body& body);
 
 /// The result of split_materials() for a body that changes, such as that of a life: it follows changes of lengths and
 /// places, which is much faster than another split.

@@ -30,10 +30,10 @@ class StiffnessBounds {
 
   /// A smaller one. Because |xb - xa|^2 <= 2 |xa|^2 + 2 |xb|^2, the matrix is at most twice its diagonal blocks. The
   /// bound is therefore twice the largest eigenvalue of the block of any mass. That of the discs is larger because it
-  /// ignores that springs have different directions. NaN if a position is not finite.
+  /// ignores that springs have different directions. NaN if that of a moving mass with springs is not finite.
   double of_blocks() const;
 
-  /// Whether of_blocks() is below `limit`, which takes less time to find out than the bound.
+  /// Whether of_blocks() is below a positive `limit`, which takes less time to find out than the bound.
   bool blocks_are_below(double limit) const;
 
  private:

@@ -298,8 +298,8 @@ template <class T>
 void run(Task& task, const Scene& scene, const Stepping& stepping, const Kernels<T>& kernels, Recording recording) {
   Body coded;  // the body with rounded materials, if materials are computed
   if (stepping.materials == Materials::computed) {
-    const auto split = split_materials(*task.body);
-    coded = split ? *split : *task.body;
+    task.split = SplitBody::of(*task.body, std::move(task.split));
+    coded = task.split ? task.split->body() : *task.body;
     coded.materials = simulated_materials(coded, stepping.materials);
   }
   const Body& body = stepping.materials == Materials::computed ? coded : *task.body;

@@ -272,6 +272,8 @@ class MassActs {
     std::vector<std::uint32_t> others;
     for (const std::uint32_t partner : partners_.of(mother))
       if (can_get_one(partner)) others.push_back(partner);
+    std::ranges::sort(others);  // a partner is there once for each of several parallel springs
+    others.erase(std::ranges::unique(others).begin(), others.end());
     const auto count = static_cast<std::size_t>(limits_.springs_of_daughter - 1);
     sort_nearest_first(others, count, position, context_);
     others.resize(std::min(others.size(), count));

@@ -24,6 +24,7 @@ TEST(HostWork, IsCountedByStage) {
   EXPECT_EQ(times.at("making a body from a genome"), 1);
   EXPECT_EQ(times.at("arranging a body"), 1);
   EXPECT_EQ(times.at("arranging a changed body"), 1);
+  EXPECT_EQ(times.at("splitting materials"), 2);
   EXPECT_EQ(times.at("packing"), 2);
   EXPECT_EQ(times.at("unpacking"), 2);
   EXPECT_EQ(times.at("developing a body"), 2);

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "cuda/runtime/portion.hpp"
+
 namespace evodevo::cuda {
 namespace {
 
@@ -118,6 +120,12 @@ TEST(Coalescer, DoesTheWorkOfManyCallersOnce) {
       });
   }
   EXPECT_LE(largest, most);
+}
+
+TEST(Kind, HasBodiesOfSimilarNumbersOfSteps) {
+  const cuda::Run run{};
+  EXPECT_TRUE(Kind(run, 600) == Kind(run, 1000));
+  EXPECT_FALSE(Kind(run, 1000) == Kind(run, 42'000)) << "the one would wait for the other";
 }
 
 }  // namespace

@@ -74,6 +74,20 @@ TEST(MassActs, DaughtersLieWhereThereIsRoom) {
   EXPECT_EQ(places.size(), 20u);
 }
 
+TEST(MassActs, DaughtersGetOneSpringToEachPartnerWhateverItsNumberOfSprings) {
+  const auto devo = make<Devo>("regulated-growth", "actions = 1\nsprings = 4\ndistance = 0.25");
+  Life life = two_chains();
+  Body& body = life.living.body;
+  body.springs.insert(body.springs.end(), {body.springs[0], body.springs[1], body.springs[0]});  // parallel
+  life.own = genes(*devo, {{"divide", "contact", 1}});
+  life.contact = {0, 1, 0, 0, 0, 0};
+  const Edits edits = develop(*devo, life, 1);
+  ASSERT_EQ(edits.new_masses.size(), 1u);
+  EXPECT_EQ(edits.new_springs.size(), 3u) << "to the mother and her two partners";
+  EXPECT_EQ(joined(after(life, edits).body),
+            (std::set<Pair>{{0, 1}, {1, 2}, {3, 4}, {4, 5}, {0, 6}, {1, 6}, {2, 6}}));
+}
+
 TEST(MassActs, CrowdedDaughtersAreNotBorn) {
   Life life = two_chains();
   life.contact = {1, 0, 0, 0, 0, 0};

@@ -63,6 +63,7 @@ void expect_split_to_follow(std::span<const Body> forms) {
     if (!split) continue;
     const Body& kept = split->body();
     ASSERT_EQ(kept.springs.size(), anew->springs.size());
+    EXPECT_EQ(split_materials(kept), nullptr) << "springs of a material differ";
     for (std::size_t i = 0; i < kept.springs.size(); ++i) {
       const Spring &one = kept.springs[i], &other = anew->springs[i];
       EXPECT_EQ(std::tie(one.a, one.b, one.rest_length, one.stiffness_factor),

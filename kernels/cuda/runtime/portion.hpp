@@ -41,7 +41,7 @@ struct Run {
 };
 
 /// What bodies of different runs must have in common to be simulated together. They all wait for the one with the most
-/// steps, so the number of steps is among it, to a factor of two.
+/// steps, so the number of steps, to a factor of two, is part of it.
 struct Kind {
   /// `steps`: the largest number of any body.
   Kind(const Run& run, std::uint64_t steps)

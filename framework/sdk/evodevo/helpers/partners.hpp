@@ -30,7 +30,8 @@ class Partners {
       }
   }
 
-  /// Returns the partners of a mass, in the order of the springs.
+  /// Returns the partners of a mass, in the order of the springs. If several springs join it to the same partner, that
+  /// partner is there once for each.
   std::span<const std::uint32_t> of(std::uint32_t mass) const {
     return {partners_.data() + first_[mass], first_[mass + 1] - first_[mass]};
   }

@@ -3,10 +3,10 @@
 const bits = [0, 1, 2, 3, 4, 5, 6, 7]; // of a corner: 1, 2 and 4 say on which side along x, y and z it is
 const most = 28; // pairs of corners of a voxel
 
-/** Returns the voxels of a life: cubes of eight masses whose four body diagonals are springs at birth. Only these springs
- *  belong to one voxel alone. Each voxel has its `corners`, masses in the order of `bits`; the `springs` that ever join two
- *  of them, in a list for each pair, since springs may act in parallel; the diagonals `inside`; and the indices of its
- *  `neighbours`, two for each axis, -1 where there is none. */
+/** Returns the voxels of a life: cubes of eight masses whose four body diagonals are springs at birth. Only these pairs
+ *  of masses belong to one voxel alone. Each voxel has its `corners`, masses in the order of `bits`; the `springs` that
+ *  ever join two of them, in a list for each pair, since springs may act in parallel; the diagonals `inside`; and the
+ *  indices of its `neighbours`, two for each axis, -1 where there is none. */
 export function voxelsOf(life) {
   const shot = life.shots.find(({ springs }) => springs.length > 0);
   if (!shot) return [];
