@@ -24,10 +24,10 @@ const skinBox = (tab) => tab.getByLabel("Skin", { exact: true });
 const pairOf = (a, b) => `${Math.min(a, b)} ${Math.max(a, b)}`;
 const neighbours = ([x, y, z]) => [[x - 1, y, z], [x + 1, y, z], [x, y - 1, z], [x, y + 1, z], [x, y, z - 1], [x, y, z + 1]];
 
-/** Returns the voxels of a robot at birth, from its body as the command `body` prints it: the place of each in the
+/** Returns the voxels of a robot of a run at birth, from its body as the command `body` prints it: the place of each in the
  *  lattice and its corners. A body diagonal joins two corners that belong to no other voxel together. */
-function voxelsOf(individual) {
-  const { masses, springs } = JSON.parse(evodevo("body", scratch.run, "--individual", String(individual)));
+function voxelsOf(individual, run = scratch.run) {
+  const { masses, springs } = JSON.parse(evodevo("body", run, "--individual", String(individual)));
   const low = [0, 1, 2].map((axis) => Math.min(...masses.map(({ position }) => position[axis])));
   const places = masses.map(({ position }) => position.map((x, axis) => Math.round((x - low[axis]) / edge)));
   const massAt = new Map(places.map((place, i) => [place.join(), i]));
@@ -131,17 +131,24 @@ test("a skin covers voxels whose springs act in parallel to those of their neigh
   evodevo("report", run, "--best", "1", "--out", file);
   const tab = await opened(browser, file);
   await skinBox(tab).check();
-  const { voxels, springs, drawn, faces } = await inPage(tab, ({ viewer }) => {
+  const { individual, pairs, masses, drawn, faces } = await inPage(tab, ({ viewer }) => {
     const [stage] = viewer.stages;
     viewer.seek(0);
     viewer.draw();
-    const { voxels, shots } = stage.life;
-    const drawn = stage.springs.getAttribute("position").count / 4;
-    return { voxels: voxels.length, springs: shots[0].springs.length, drawn, faces: stage.skin.getAttribute("position").count / 4 };
+    const { ends, shots } = stage.life;
+    return {
+      individual: viewer.robots[0].robot.individual,
+      pairs: [...shots[0].springs].map((spring) => [...ends.slice(2 * spring, 2 * spring + 2)]),
+      masses: [...shots[0].masses],
+      drawn: stage.springs.getAttribute("position").count / 4,
+      faces: stage.skin.getAttribute("position").count / 4,
+    };
   });
-  assert.ok(voxels > 0 && springs === 28 * voxels, `${voxels} voxels of ${springs} springs`);
+  const voxels = voxelsOf(individual, run);
+  assert.ok(voxels.length > 1, `${voxels.length} voxels`);
+  assert.equal(pairs.length, 28 * voxels.length);
   assert.equal(drawn, 0, "springs that faces cover are drawn");
-  assert.ok(faces >= 6 && faces <= 6 * voxels, `${faces} faces`);
+  assert.equal(faces, facesOf(voxels, new Set(pairs.map(([a, b]) => pairOf(a, b))), new Set(masses)).faces);
   assert.deepEqual(tab.complaints, []);
   await tab.close();
 });

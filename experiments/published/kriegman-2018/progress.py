@@ -12,7 +12,6 @@ Needs evodevo's Python package (tools/python/README.md), SciPy, and Matplotlib f
 """
 
 import argparse
-import dataclasses
 import pathlib
 import sys
 
@@ -21,24 +20,13 @@ sys.path.append(str(ROOT / "tools/parts"))
 
 try:
     import evodevo
-    from compare import history, standings
+    from compare import history, runs, standings
 except ImportError as error:
     sys.exit(f"progress: {error}; this needs SciPy, and evodevo's Python package in PYTHONPATH: see "
              "tools/python/README.md")
 
 GENERATIONS = [100, 300, 1000, 2000, 3000]
 DISTANCE = history.Quantity("distance", "body lengths", maximise=True)
-
-
-@dataclasses.dataclass(frozen=True)
-class Arm:
-    """One of the experiments, as the reports of tools/compare name it."""
-
-    name: str
-
-    @property
-    def label(self):
-        return self.name
 
 
 def history_of(folder):
@@ -49,30 +37,31 @@ def history_of(folder):
 
 
 def histories_of(folder):
-    """Returns a dictionary from experiments to the histories of their runs."""
+    """Returns a dictionary from the experiments, as runs.Variant, to the histories of their runs."""
     histories = {}
     for file in sorted(folder.glob("runs/*/seed-*/run.sqlite")):
-        histories.setdefault(Arm(file.parts[-3]), []).append(history_of(file.parent))
+        experiment = runs.Variant(pathlib.Path(f"{file.parts[-3]}.toml"))
+        histories.setdefault(experiment, []).append(history_of(file.parent))
     return histories
 
 
 def report(histories):
     """Prints the tables."""
-    last = min(run.generations[-1] for runs in histories.values() for run in runs)
+    last = min(run.generations[-1] for of_one in histories.values() for run in of_one)
     rows = []
     for generation in [*(some for some in GENERATIONS if some < last), last]:
-        best = ([run.at("generations", generation, "best") for run in runs] for runs in histories.values())
+        best = ([run.at("generations", generation, "best") for run in of_one] for of_one in histories.values())
         rows.append([str(generation), *map(standings.median_with_interval, best)])
-    print(standings.table(["generation", *(f"`{arm.name}`" for arm in histories)], rows))
+    print(standings.table(["generation", *(f"`{experiment.name}`" for experiment in histories)], rows))
     if len(histories) > 1:
         print(standings.comparison(histories, DISTANCE, "generations", last, next(iter(histories)).name))
-    for arm, runs in histories.items():
-        reached = [run.generations[-1] for run in runs]
-        failed = sum(run.diverged[-1] + run.invalid[-1] for run in runs)
-        print(f"{arm.name}: {len(runs)} runs of {min(reached)} to {max(reached)} generations, {failed} robots failed, "
-              f"{sum(run.evaluations[-1] for run in runs)} lives, "
-              f"{sum(run.spring_evaluations[-1] for run in runs):.3g} spring evaluations, "
-              f"{sum(run.seconds[-1] for run in runs) / 3600:.1f} hours of runs side by side")
+    for experiment, of_one in histories.items():
+        reached = [run.generations[-1] for run in of_one]
+        failed = sum(run.diverged[-1] + run.invalid[-1] for run in of_one)
+        print(f"{experiment.name}: {len(of_one)} runs of {min(reached)} to {max(reached)} generations, {failed} robots "
+              f"failed, {sum(run.evaluations[-1] for run in of_one)} lives, "
+              f"{sum(run.spring_evaluations[-1] for run in of_one):.3g} spring evaluations, "
+              f"{sum(run.seconds[-1] for run in of_one) / 3600:.1f} hours of runs side by side")
 
 
 def main():
