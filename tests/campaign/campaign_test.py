@@ -6,6 +6,7 @@ import pathlib
 import stat
 import tempfile
 import unittest
+import unittest.mock
 
 from campaign import arguments
 from campaign.command import campaign, chosen
@@ -29,11 +30,11 @@ if [ -z "$prefix" ]; then
   case $(cat "$last") in
     bool*) echo "wire.hpp:99:12: runtime error: load of value $(wc -c <"$last"), which is no value for type 'bool'" ;;
     other) echo "wire.hpp:11:3: runtime error: load of value 5, which is no value for type 'bool'" ;;
-    law) echo "fault: what was written reads back as something else" ;;
+    law*) echo "fault: $PWD/small.toml: what was written reads back as something else" ;;
   esac
   exit 77
 fi
-for input in bool-long bool other law again; do printf $input >"${prefix}crash-$input"; done
+for input in bool-long bool other law-long law again; do printf $input >"${prefix}crash-$input"; done
 echo "#13: cov: 9 ft: 9 corp: 1 exec/s: 1 oom/timeout/crash: 0/0/4 time: 1s job: 3 dft_time: 0"
 """
 OPERATORS = [
@@ -135,11 +136,25 @@ class Campaigns(unittest.TestCase):
         self.assertRegex(page, r"\| sound \| 977 \| 977 \| 0 \| [\d.]+ \| 43 \|")
         found = (self.folder / "out" / "found").resolve()
         self.assertIn(f"- {found}/faulty-crash-bool: wire.hpp:99:12: runtime error: load of value 4, ", page)
-        self.assertIn(f"- {found}/faulty-crash-law: what was written reads back as something else\n", page)
+        self.assertRegex(page, f"- {found}/faulty-crash-law: /.*: what was written reads back as something else\n")
         self.assertIn(f"- {found}/faulty-crash-again: it is not shown again\n", page)
         self.assertIn(f"- {found}/faulty-crash-other: wire.hpp:11:3: ", page)
         names = {each.name.removeprefix("faulty-crash-") for each in found.iterdir()}
         self.assertEqual(names, {"bool", "other", "law", "again"}, "the smallest of each")
+
+    def test_targets_share_the_cores(self):
+        # each target waits for the other, and tells in how many processes it should run
+        meet = (
+            f'touch "{self.folder}/$(basename "$0").here"\n'
+            f'cd "{self.folder}" && timeout 60 sh -c "until [ -e fuzz_one.here -a -e fuzz_two.here ]; do :; done" || exit\n'
+            f'for argument; do case $argument in -fork=*) echo "${{argument#*=}}" >>"{self.folder}/forks" ;; esac; done\n'
+        )
+        for name in ("one", "two"):
+            self.target(name, f"#!/bin/sh\n{meet}{SOUND}")
+        with unittest.mock.patch("os.cpu_count", return_value=7):
+            page = self.sit(self.fuzz())
+        self.assertEqual((self.folder / "forks").read_text().split(), ["3", "3"])
+        self.assertIn("| fuzz | 1,954 | 1,954 | 0 |", page)
 
     def test_names_of_operators_and_parameters_are_given_to_the_target_that_reads_them(self):
         words = self.folder / "words"

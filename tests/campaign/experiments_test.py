@@ -8,6 +8,7 @@ import pathlib
 import random
 import shlex
 import tempfile
+import threading
 import tomllib
 import unittest
 import unittest.mock
@@ -199,7 +200,7 @@ class Shrinking(unittest.TestCase):
 
     def test_shrinking_ends_in_time(self):
         with tempfile.TemporaryDirectory() as scratch, unittest.mock.patch("campaign.experiments.SHRINKING", 0):
-            part = Experiments(listed_operators(PROGRAM), self.NothingRests(), pathlib.Path(scratch))
+            part = Experiments(listed_operators(PROGRAM), [self.NothingRests()], pathlib.Path(scratch))
             outcomes = []
             while not any(each.found for each in outcomes):
                 outcomes += part.sitting(1e-9, outcomes)
@@ -220,7 +221,7 @@ class Shrinking(unittest.TestCase):
     def test_only_what_breaks_the_law_is_left(self):
         with tempfile.TemporaryDirectory() as scratch:
             folder = pathlib.Path(scratch)
-            part = Experiments(listed_operators(PROGRAM), self.NothingRests(), folder)
+            part = Experiments(listed_operators(PROGRAM), [self.NothingRests()], folder)
             outcomes = []
             while not any(each.found for each in outcomes):
                 outcomes += part.sitting(1e-9, outcomes)  # one experiment
@@ -235,8 +236,32 @@ class Shrinking(unittest.TestCase):
         laws = unittest.mock.Mock(left_out={})
         laws.hold.side_effect = [Broken("rest: not reached"), *[True] * 1000]
         with tempfile.TemporaryDirectory() as scratch:
-            outcomes = list(Experiments(listed_operators(PROGRAM), laws, pathlib.Path(scratch)).sitting(1e-9, ()))
+            outcomes = list(Experiments(listed_operators(PROGRAM), [laws], pathlib.Path(scratch)).sitting(1e-9, ()))
         self.assertRegex(outcomes[0].found[0], "experiment-0.toml: rest: not reached; not ")
+
+    class WaitsForAnother:
+        """A law that holds once two experiments are tried at the same time, each with laws of its own."""
+
+        left_out = {"pages": "there is no browser"}
+
+        def __init__(self, barrier):
+            self._barrier, self._alone = barrier, threading.Lock()
+
+        def hold(self, file):
+            if not self._alone.acquire(blocking=False):
+                raise Broken("laws: two experiments at once")
+            self._barrier.wait(timeout=60)
+            self._alone.release()
+            return True
+
+    def test_as_many_are_tried_at_once_as_there_are_laws(self):
+        barrier = threading.Barrier(2)
+        laws = [self.WaitsForAnother(barrier) for _ in range(2)]
+        with tempfile.TemporaryDirectory() as scratch:
+            part = Experiments(listed_operators(PROGRAM), laws, pathlib.Path(scratch))
+            outcomes = list(itertools.islice(part.sitting(1e9, ()), 3))
+        self.assertEqual([(each.case, each.tried) for each in outcomes[1:]], [("runs", BATCH), ("refused by check", 0)])
+        self.assertEqual([fault for each in outcomes for fault in each.found], [])
 
     class NoPageOpens:
         """Laws of which the last is broken, and one is left out."""
@@ -259,7 +284,7 @@ class Shrinking(unittest.TestCase):
     def test_a_page_of_each_batch_is_opened_and_what_is_left_out_is_named(self):
         nothing_smaller = unittest.mock.patch("campaign.experiments.without", lambda tables: ())
         with tempfile.TemporaryDirectory() as scratch, nothing_smaller:
-            part = Experiments(listed_operators(PROGRAM), self.NoPageOpens(), pathlib.Path(scratch))
+            part = Experiments(listed_operators(PROGRAM), [self.NoPageOpens()], pathlib.Path(scratch))
             past = [Outcome("experiments", case, tried, (), 1) for case, tried in (("runs", 100), ("pages", 5))]
             outcomes = list(itertools.islice(part.sitting(1e9, past), 7))
         cases = [(each.case, each.tried, len(each.found)) for each in outcomes]

@@ -3,7 +3,6 @@
 
 import collections
 import concurrent.futures
-import dataclasses
 import itertools
 import json
 import os
@@ -42,7 +41,7 @@ class Bodies:
             told, kept = time.monotonic(), []
             while True:  # at least once, however little time there is
                 for outcomes in pool.map(self._try, itertools.islice(first, jobs)):
-                    kept += (shared(outcome, jobs) for outcome in outcomes)
+                    kept += outcomes
                 now = time.monotonic()
                 if now >= min(end, told + KEPT):
                     yield from merged(kept)
@@ -92,7 +91,7 @@ class Sanitizers:
         waiting = [case for case in cases if case[1] >= tried[case[0]]]
         with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
             for some in (waiting[i : i + jobs] for i in range(0, len(waiting), jobs)):
-                yield from (shared(outcome, jobs) for outcome in pool.map(self._try, some))
+                yield from pool.map(self._try, some)
                 if time.monotonic() >= end:
                     return
 
@@ -108,11 +107,6 @@ class Sanitizers:
             found.append(f"{fault or 'no result'}{first_complaint(told)}")
         named = tuple(f"{tool}: {self._program.name} {self._device} {batch} 1 {SANITIZED}: {each}" for each in found)
         return Outcome(self.name, tool, SANITIZED, named, time.monotonic() - began)
-
-
-def shared(outcome, jobs):
-    """Returns an outcome that so many processes have found at once, with its share of the time."""
-    return dataclasses.replace(outcome, seconds=outcome.seconds / jobs)
 
 
 def merged(outcomes):

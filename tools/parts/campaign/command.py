@@ -4,6 +4,7 @@ A part has a `name`, and `sitting(seconds, past)`, which tries cases for about s
 soon as it has one. `past` are the part's outcomes of earlier sittings.
 """
 
+import os
 import pathlib
 import subprocess
 
@@ -49,7 +50,7 @@ def parts(program, folder):
     operators, built = listed_operators(program), pathlib.Path(program).resolve().parents[1]
     return [
         Bodies(hostile_bodies(program), "cpu"),
-        Experiments(operators, Laws(program, folder.resolve() / "experiments"), folder),
+        Experiments(operators, laws(program, folder), folder),
         Fuzz(built_targets, operators, folder),
         Soak(program, folder),
         Storage(program, built / "lib" / "faults.so", folder),
@@ -58,12 +59,18 @@ def parts(program, folder):
 
 def parts_on_gpu(program, folder):
     bodies = hostile_bodies(program)
-    laws = Laws(program, folder.resolve() / "experiments")
     return [
         Bodies(bodies, "cuda"),
-        Experiments(listed_operators(program), laws, folder, "cuda"),
+        Experiments(listed_operators(program), laws(program, folder), folder, "cuda"),
         Sanitizers(bodies, "cuda"),
     ]
+
+
+def laws(program, folder):
+    """Returns the laws of experiments for as many at once as there are pairs of cores, since most commands of each run on
+    one core, and others on three."""
+    at_once = max(1, (os.cpu_count() or 1) // 2)
+    return [Laws(program, folder.resolve() / "experiments" / str(number)) for number in range(at_once)]
 
 
 def hostile_bodies(program):

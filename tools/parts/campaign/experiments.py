@@ -1,6 +1,10 @@
 """The part that composes experiments at random, and holds the program to the laws of laws.py."""
 
+import concurrent.futures
+import dataclasses
+import itertools
 import json
+import queue
 import random
 import re
 import subprocess
@@ -27,48 +31,70 @@ def listed_operators(program):
     return json.loads(listed.stdout)
 
 
+@dataclasses.dataclass(frozen=True)
+class Trial:
+    accepted: bool
+    fault: str | None
+    seconds: float
+
+
 class Experiments:
     """Each experiment follows from its number, which goes on from sitting to sitting. One that breaks a law is made as
-    small as it can be while that law stays broken, and kept in DIR/found."""
+    small as it can be while that law stays broken, and kept in DIR/found. As many experiments are tried at once as there
+    are `laws`, each of which tries one."""
 
     name = "experiments"
 
     def __init__(self, operators, laws, folder, device="cpu"):
-        self._operators, self._laws, self._device = operators, laws, device
+        self._operators, self._jobs, self._device = operators, len(laws), device
+        self._left_out = laws[0].left_out
+        self._free = queue.SimpleQueue()
+        for each in laws:
+            self._free.put(each)
         self._found = folder.resolve() / "found"
 
     def sitting(self, seconds, past):
-        number = sum(each.tried for each in past if each.case in EXPERIMENTS)
+        first = sum(each.tried for each in past if each.case in EXPERIMENTS)
         end = time.monotonic() + seconds
-        for law, reason in self._laws.left_out.items():
+
+        def tried_in_time(number):  # at least one, however little time there is
+            return self._try(number) if number == first or time.monotonic() < end else None
+
+        for law, reason in self._left_out.items():
             yield Outcome(self.name, f"{law}: left out, since {reason}", 0, (), 0)
-        while True:  # at least one, however little time there is
-            began, counts, found = time.monotonic(), dict.fromkeys(EXPERIMENTS, 0), []
-            for number in range(number, number + BATCH):
-                accepted, fault = self._try(number, self._laws.hold)
-                counts["runs" if accepted else "refused by check"] += 1
-                found += [fault] * bool(fault)
+        with concurrent.futures.ThreadPoolExecutor(self._jobs) as pool:
+            for begin in itertools.count(first, BATCH):
+                numbers = range(begin, begin + BATCH)
+                yield from self._counted([*filter(None, pool.map(tried_in_time, numbers))])
                 if time.monotonic() >= end:
-                    break
-            number += 1
-            spent = (time.monotonic() - began) / sum(counts.values())
-            for case, tried in counts.items():
-                yield Outcome(self.name, case, tried, tuple(found) if case == "runs" else (), spent * tried)
-            if time.monotonic() >= end:
-                return
-            if "pages" not in self._laws.left_out:
-                yield from self._page(range(number - BATCH, number))
+                    return
+                if "pages" not in self._left_out:
+                    yield from self._page(numbers)
+
+    def _counted(self, trials):
+        for case, accepted in zip(EXPERIMENTS, (True, False)):
+            of_case = [each for each in trials if each.accepted == accepted]
+            found = tuple(each.fault for each in of_case if each.fault)
+            yield Outcome(self.name, case, len(of_case), found, sum(each.seconds for each in of_case))
 
     def _page(self, numbers):
         """Opens the page of the first of some experiments that is accepted."""
-        began = time.monotonic()
         for number in numbers:
-            accepted, fault = self._try(number, self._laws.page_holds)
-            if accepted:
-                yield Outcome(self.name, "pages", 1, (fault,) if fault else (), time.monotonic() - began)
+            trial = self._try(number, of_page=True)
+            if trial.accepted:
+                yield Outcome(self.name, "pages", 1, (trial.fault,) if trial.fault else (), trial.seconds)
                 return
 
-    def _try(self, number, hold):
+    def _try(self, number, of_page=False):
+        began = time.monotonic()
+        laws = self._free.get()
+        try:
+            accepted, fault = self._tried(number, laws.page_holds if of_page else laws.hold)
+        finally:
+            self._free.put(laws)
+        return Trial(accepted, fault, time.monotonic() - began)
+
+    def _tried(self, number, hold):
         """Returns whether an experiment was accepted, and the fault that it shows, if any. `hold` tries the laws."""
         tables = Draw(self._operators, random.Random(number), self._device).experiment()
         self._found.mkdir(parents=True, exist_ok=True)

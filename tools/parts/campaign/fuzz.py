@@ -1,5 +1,6 @@
 """The part that lets libFuzzer make inputs for the targets in tests/fuzz."""
 
+import concurrent.futures
 import os
 import pathlib
 import re
@@ -14,16 +15,16 @@ from .outcomes import Outcome
 CORPUS = pathlib.Path(__file__).resolve().parents[3] / "tests" / "fuzz" / "corpus"
 MEGABYTES = 2048  # of memory of a target, and
 SECONDS = 10  # of an input, beyond which it counts as a fault
-# in what is said of a fault: quoted texts, addresses, and numbers other than those of lines and columns; without them,
-# the same is said of the same fault
-PARTICULARS = re.compile(r'".*?"|(?<!\+)\b0x[0-9a-f]+|(?<![:\w])\d[\d.]*')
+# in what is said of a fault: quoted texts, the names of temporary folders, addresses, and numbers other than those of
+# lines and columns; without them, the same is said of the same fault
+PARTICULARS = re.compile(r'".*?"|\bevodevo-fuzz-\w+|(?<!\+)\b0x[0-9a-f]+|(?<![:\w])\d[\d.]*')
 OF_WORDS = ("experiment",)  # targets to which the names of operators and parameters are given
 
 
 class Fuzz:
-    """Runs each program fuzz_TARGET in a folder for an equal time. Inputs that reach new code go to DIR/corpus/TARGET,
-    from where the next sitting goes on, and those that show a fault to DIR/found, one for each fault. After a fault,
-    libFuzzer starts the program again, as long as there is time."""
+    """Runs each program fuzz_TARGET in a folder for an equal time, on as many cores as there are. Inputs that reach new
+    code go to DIR/corpus/TARGET, from where the next sitting goes on, and those that show a fault to DIR/found, one for
+    each fault. After a fault, libFuzzer starts the program again, as long as there is time."""
 
     name = "fuzz"
 
@@ -38,29 +39,32 @@ class Fuzz:
         programs = sorted(folder.glob("fuzz_*"))
         if not programs:
             raise Failure(f"{folder}: there is no program fuzz_TARGET; build the target fuzz_targets")
-        for program in programs:
-            yield self._run(program, max(1, round(seconds / len(programs))))
+        cores, count = os.cpu_count() or 1, len(programs)
+        at_once = min(cores, count)
+        each = max(1, round(seconds * at_once / count))
+        with concurrent.futures.ThreadPoolExecutor(at_once) as pool:
+            yield from pool.map(lambda program: self._run(program, each, cores // at_once), programs)
 
-    def _run(self, program, seconds):
+    def _run(self, program, seconds, processes):
         target = program.name.removeprefix("fuzz_")
         corpus, found = self._folder / "corpus" / target, self._folder / "found"
         for folder in (corpus, found):
             folder.mkdir(parents=True, exist_ok=True)
-        before = set(found.iterdir())
+        before = set(found.glob(f"{target}-*"))
         began = time.monotonic()
-        log = self._made_inputs(program, seconds, corpus, found / f"{target}-")
-        faults = self._distinct_faults(program, set(found.iterdir()) - before)
-        spent = time.monotonic() - began
+        log = self._made_inputs(program, seconds, processes, corpus, found / f"{target}-")
+        spent = processes * (time.monotonic() - began)
+        faults = self._distinct_faults(program, set(found.glob(f"{target}-*")) - before)
         tried, covered = counts(log)
         if not faults and tried == 0:
             raise Failure(f"{program} made no inputs; it says: {' '.join(log.split())[-500:]}")
         return Outcome(self.name, target, tried, tuple(f"{file}: {fault}" for file, fault in faults), spent, covered)
 
-    def _made_inputs(self, program, seconds, corpus, prefix):
-        """Lets libFuzzer make inputs, and returns what it says."""
+    def _made_inputs(self, program, seconds, processes, corpus, prefix):
+        """Lets libFuzzer make inputs in so many processes, and returns what it says."""
         target = program.name.removeprefix("fuzz_")
         options = [
-            "-fork=1",
+            f"-fork={processes}",
             "-ignore_crashes=1",
             "-ignore_timeouts=1",
             "-ignore_ooms=1",

@@ -14,7 +14,7 @@ class Outcome:
     case: str  # such as the name of a target
     tried: int
     found: tuple[str, ...]  # the faults, each with the file that shows it
-    seconds: float
+    seconds: float  # added up over what was tried at the same time
     covered: int | None = None  # number of edges of the program's control flow that were taken so far
 
 

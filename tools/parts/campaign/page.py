@@ -4,7 +4,7 @@ TITLES = ("tried", "held", "found", "time", "coverage")
 
 
 def page(outcomes):
-    lines = ["# Campaign", "", "Times are in minutes. Coverage is in edges of the control flow.", ""]
+    lines = ["# Campaign", "", "Times are in minutes, and add up over what was tried at the same time. Coverage is in edges of the control flow.", ""]
     lines += _table("part", _groups(outcomes, lambda each: each.part), with_coverage=False)
     for part, of_part in _groups(outcomes, lambda each: each.part).items():
         lines += [f"## {part}", ""] + _table("case", _groups(of_part, lambda each: each.case), with_coverage=True)
