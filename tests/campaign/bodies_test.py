@@ -7,7 +7,7 @@ import tempfile
 import unittest
 import unittest.mock
 
-from campaign.bodies import BATCHES, BODIES, SANITIZED, SANITIZERS, Bodies, Sanitizers
+from campaign.bodies import AT_ONCE, BATCHES, BODIES, SANITIZED, SANITIZERS, Bodies, Sanitizers, processes
 
 HOSTILE = pathlib.Path(os.environ["EVODEVO_PROGRAM"]).with_name("hostile_bodies")
 # does what hostile_bodies does, but more quickly, and something else with the batch 30
@@ -29,6 +29,8 @@ case $tool in
   synccheck) kill -9 $$ ;;
 esac
 """
+
+GPU = BODIES["cuda"]
 
 
 class RandomBodies(unittest.TestCase):
@@ -56,26 +58,34 @@ class RandomBodies(unittest.TestCase):
     def test_real_bodies_hold(self):
         outcomes = list(Bodies(HOSTILE, "cpu").sitting(0, ()))
         self.assertEqual([each.found for each in outcomes if each.found], [])
-        self.assertEqual(sum(each.tried for each in outcomes), BATCHES * BODIES)
+        self.assertEqual(sum(each.tried for each in outcomes), BATCHES * BODIES["cpu"])
         self.assertEqual(len(outcomes), BATCHES)  # each kind once: methods, precisions, tame and hostile
 
     def test_the_next_sitting_goes_on(self):
         outcomes = self.sittings(f"found='\"body 3: hot\"'")
-        self.assertEqual(sum(each.tried for each in outcomes), 2 * BATCHES * BODIES)
+        self.assertEqual(sum(each.tried for each in outcomes), 2 * BATCHES * GPU)
         found = [fault for each in outcomes for fault in each.found]
-        self.assertEqual(found, [f"hostile_bodies cuda 30 1 {BODIES}: body 3: hot"])
+        self.assertEqual(found, [f"hostile_bodies cuda 30 1 {GPU}: body 3: hot"])
 
     def test_a_crash_is_named_by_its_batch_and_the_others_are_tried(self):
         outcomes = self.sittings("exit 7", number=3)
         found = [fault for each in outcomes for fault in each.found]
-        self.assertEqual(found, [f"hostile_bodies cuda 30 1 {BODIES}: exit code 7"])
+        self.assertEqual(found, [f"hostile_bodies cuda 30 1 {GPU}: exit code 7"])
         tried = {what: sum(each.tried for each in outcomes if each.case == what) for what in ("kind 0", "kind 1", "not done")}
-        half = 3 * BATCHES * BODIES // 2
-        self.assertEqual(tried, {"kind 0": half - BODIES, "kind 1": half, "not done": BODIES})
+        half = 3 * BATCHES * GPU // 2
+        self.assertEqual(tried, {"kind 0": half - GPU, "kind 1": half, "not done": GPU})
+
+    def test_a_gpu_gets_no_more_processes_than_it_has_memory_for(self):
+        with unittest.mock.patch("os.cpu_count", return_value=3 * AT_ONCE):
+            self.assertEqual((processes("cpu"), processes("cuda")), (3 * AT_ONCE, AT_ONCE))
+
+    def test_what_a_program_says_last_is_told(self):
+        found = [fault for each in self.sittings("echo no room >&2; exit 2") for fault in each.found]
+        self.assertEqual(found, [f"hostile_bodies cuda 30 1 {GPU}: exit code 2: no room"])
 
     def test_a_hang_is_named(self):
         found = [fault for each in self.sittings("sleep 1000", seconds=1) for fault in each.found]
-        self.assertEqual(found, [f"hostile_bodies cuda 30 1 {BODIES}: not done after 1 s"])
+        self.assertEqual(found, [f"hostile_bodies cuda 30 1 {GPU}: not done after 1 s"])
 
     def test_a_program_that_was_not_built_is_left_out(self):
         (outcome,) = Bodies(self.folder / "hostile_bodies", "cuda").sitting(0, ())

@@ -103,6 +103,26 @@ TEST(Resident, LargeBodiesGetASmallClusterThatHoldsTheirSprings) {
   EXPECT_EQ(blocks(290, 16, 16), 1u) << "a small body is faster in one block";
 }
 
+TEST(Resident, NoBodyIsDividedIntoMorePartsThanItHasMasses) {
+  const Scene scene = testing_gpu::walking_scene();
+  Body body;
+  body.masses = {{{0, 0, 0}, 0.2}, {{1, 0, 0}, 0.2}, {{0, 1, 0}, 0.2}};
+  body.springs = {{0, 1, 1, 0}, {1, 2, 1.4, 1}};
+  body.materials.assign(3000, {4000, 0.1, 1, 0});  // of which no block has room for the lengths
+  State state = state_at_birth(body, scene);
+  const Task of_many_materials = task_of<double>(body, state, scene);
+  Features recording = features;
+  recording.method = Method::rk4;
+  recording.float64 = recording.actuation = recording.dashpots = recording.work = true;
+  EXPECT_FALSE(Resident<double>::arrange(of_many_materials, recording, {shared_bytes, 16}));
+  body.materials.resize(1);
+  body.springs.assign(100000, {0, 1, 1, 0});  // for which no block has room
+  const Task of_many_springs = task_of<float>(body, state, scene);
+  const auto resident = Resident<float>::arrange(of_many_springs, features, {shared_bytes, 16});
+  ASSERT_TRUE(resident);
+  EXPECT_EQ(resident->blocks(), 3u);
+}
+
 /// The shared memory of the blocks that simulate a body, with its positions; the halos are filled as the kernel does
 /// it.
 class Chips {

@@ -21,6 +21,12 @@ constexpr std::uint64_t steps_worth_a_cluster = 10000;
 /// samples would depend on it.
 bool is_free(const Features& features) { return !features.work && !features.float64; }
 
+/// The largest size of a cluster of at most so many blocks.
+unsigned largest_cluster_of(std::size_t blocks) {
+  return *std::prev(
+      std::upper_bound(std::begin(cluster_sizes), std::end(cluster_sizes), std::max<std::size_t>(blocks, 1)));
+}
+
 /// What a body with these features is arranged for.
 Target target_of(const Body& body, const Features& features, const Room& room) {
   const bool is_filled = features.actuation && !has_codes(features);
@@ -45,11 +51,13 @@ std::optional<Resident<T>> Resident<T>::arrange(const Task& task, const Features
   unsigned first = wanted;
   if (needs > 0 && earlier && earlier->needs() == needs && earlier->is_of(*task.body))
     first = static_cast<unsigned>(earlier->blocks().size());
+  // each block has a mass
+  const unsigned last = largest_cluster_of(std::min<std::size_t>(room.largest_cluster, task.body->masses.size()));
   for (const unsigned blocks : cluster_sizes) {
-    if (blocks > room.largest_cluster) break;
+    if (blocks > last) break;
     if (blocks < first) continue;
     const std::size_t chip = largest_chip(room.shared_bytes, blocks > 1);
-    const bool is_last = blocks == room.largest_cluster;
+    const bool is_last = blocks == last;
     if (!may_suffice(task, features, blocks, is_last, chip)) continue;
     Resident resident(task, features, blocks, target_of(*task.body, features, room), needs);
     resident.divide_chip(true, chip);
@@ -70,9 +78,7 @@ unsigned Resident<T>::wanted_blocks(const Task& task, const Features& features, 
   if (!is_free(features) || steps < steps_worth_a_cluster) return 1;
   const std::size_t masses = task.body->masses.size();
   const auto most = static_cast<unsigned>(masses < worth_a_cluster ? 1 : masses / least_masses);
-  const unsigned wanted = std::min({room.wanted_blocks, room.largest_cluster, most});
-  const auto larger = std::upper_bound(std::begin(cluster_sizes), std::end(cluster_sizes), std::max(wanted, 1u));
-  return *std::prev(larger);
+  return largest_cluster_of(std::min({room.wanted_blocks, room.largest_cluster, most}));
 }
 
 /// A number other than 0 that is different if a body may need a different number of blocks.

@@ -6,6 +6,7 @@ import concurrent.futures
 import itertools
 import json
 import os
+import select
 import shutil
 import signal
 import subprocess
@@ -13,10 +14,11 @@ import time
 
 from .outcomes import Outcome
 
-BODIES = 256  # in a batch
+BODIES = {"cpu": 256, "cuda": 2048}  # in a batch; more on a GPU, because each batch needs kernels that must be compiled
 BATCHES = 24  # of one process: each method in both precisions, with tame bodies and with others
-SECONDS = 120  # after which a process hangs
+SECONDS = 120  # without a word, after which a process hangs
 KEPT = 60  # s of outcomes that become one
+AT_ONCE = 8  # processes for which a GPU has memory
 SANITIZERS = ("memcheck", "racecheck", "initcheck", "synccheck")
 FORMS = 96  # batches after which each kind has been there
 SANITIZED = 6  # bodies in a batch under a sanitizer
@@ -30,13 +32,14 @@ class Bodies:
 
     def __init__(self, program, device, seconds=SECONDS):
         self._program, self._device, self._seconds = program, device, seconds
+        self._bodies = BODIES[device]
 
     def sitting(self, seconds, past):
         if not self._program.exists():
             yield Outcome(self.name, f"left out, since {obstacle(self._program)}", 0, (), 0)
             return
-        end, jobs = time.monotonic() + seconds, os.cpu_count() or 1
-        first = itertools.count(sum(each.tried for each in past) // BODIES, BATCHES)
+        end, jobs = time.monotonic() + seconds, processes(self._device)
+        first = itertools.count(sum(each.tried for each in past) // self._bodies, BATCHES)
         with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
             told, kept = time.monotonic(), []
             while True:  # at least once, however little time there is
@@ -55,10 +58,12 @@ class Bodies:
         outcomes, end = [], first + BATCHES
         while first < end:
             began = time.monotonic()
-            told, fault = output([self._program, self._device, first, end - first, BODIES], self._seconds)
-            results = [json.loads(line) for line in told.splitlines() if line.endswith("}")]
+            told, fault = output([self._program, self._device, first, end - first, self._bodies], self._seconds)
+            results = [json.loads(line) for line in told.splitlines() if line.startswith("{") and line.endswith("}")]
             if fault:
-                results.append({"batch": first + len(results), "what": "not done", "tried": BODIES, "found": [fault]})
+                found = [f"{fault}{first_complaint(told)}"]
+                batch = first + len(results)
+                results.append({"batch": batch, "what": "not done", "tried": self._bodies, "found": found})
             spent = (time.monotonic() - began) / max(1, len(results))
             for each in results:
                 found = tuple(f"{self._command(each['batch'])}: {fault}" for fault in each["found"])
@@ -67,7 +72,7 @@ class Bodies:
         return outcomes
 
     def _command(self, batch):
-        return f"{self._program.name} {self._device} {batch} 1 {BODIES}"
+        return f"{self._program.name} {self._device} {batch} 1 {self._bodies}"
 
 
 class Sanitizers:
@@ -83,7 +88,7 @@ class Sanitizers:
         if missing or not self._program.exists():
             yield Outcome(self.name, f"left out, since {missing or obstacle(self._program)}", 0, (), 0)
             return
-        end, jobs = time.monotonic() + seconds, os.cpu_count() or 1
+        end, jobs = time.monotonic() + seconds, processes(self._device)
         tried = collections.Counter()
         for each in past:
             tried[each.case] += each.tried // SANITIZED
@@ -101,7 +106,7 @@ class Sanitizers:
         words = [self._program, self._device, batch, 1, SANITIZED]
         sanitizer = ["compute-sanitizer", "--tool", tool, "--error-exitcode", FAULTY]
         told, fault = output([*sanitizer, *words], self._seconds)
-        results = [json.loads(line) for line in told.splitlines() if line.startswith("{")]
+        results = [json.loads(line) for line in told.splitlines() if line.startswith("{") and line.endswith("}")]
         found = [each for result in results for each in result["found"]]
         if fault or not results:
             found.append(f"{fault or 'no result'}{first_complaint(told)}")
@@ -126,26 +131,30 @@ def merged(outcomes):
     ]
 
 
+def processes(device):
+    cores = os.cpu_count() or 1
+    return cores if device == "cpu" else min(cores, AT_ONCE)
+
+
 def obstacle(program):
     return f"there is no {program}; configure with -D EVODEVO_TESTS=ON and build the target {program.name}"
 
 
 def output(command, seconds):
-    """Returns what a command prints, and why it did not end well, or None."""
-    with subprocess.Popen(
-        [*map(str, command)],
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        process_group=0,
-    ) as process:
-        try:
-            told, _ = process.communicate(timeout=seconds)
-        except subprocess.TimeoutExpired:
-            os.killpg(process.pid, signal.SIGKILL)  # a sanitizer and the program that it runs
-            return process.communicate()[0], f"not done after {seconds} s"
-    return told, f"exit code {process.returncode}" if process.returncode else None
+    """Returns what a command prints, and why it did not end well, or None. A command that prints nothing for so many
+    seconds is ended, with the programs that it runs."""
+    pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.STDOUT}
+    with subprocess.Popen([*map(str, command)], **pipes, process_group=0) as process:
+        told = b""
+        while select.select([process.stdout], [], [], seconds)[0]:
+            some = os.read(process.stdout.fileno(), 1 << 16)
+            if not some:
+                process.wait()
+                fault = f"exit code {process.returncode}" if process.returncode else None
+                return told.decode(errors="replace"), fault
+            told += some
+        os.killpg(process.pid, signal.SIGKILL)
+        return told.decode(errors="replace"), f"not done after {seconds} s"
 
 
 def first_complaint(told):

@@ -96,28 +96,30 @@ class Soak:
         yield Outcome(self.name, "generations", generations, found, time.monotonic() - began)
 
     def _watched(self, seconds, sitting):
-        """Lets the run go on for some time; returns samples, the number of generations, and what went wrong, if anything
-        did."""
+        """Lets the run go on for some time from its first generation on; returns samples, the number of generations, and
+        what went wrong, if anything did."""
         samples, generations = [], 0
         with tempfile.TemporaryFile("w+") as said:
             options = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": said, "text": True}
             run = subprocess.Popen(self._command(), **options)
             stop = threading.Timer(seconds, run.send_signal, [signal.SIGINT])
-            timers = [stop, threading.Timer(seconds + PATIENCE, run.kill)]
+            kill = threading.Timer(seconds + PATIENCE, run.kill)
             try:
-                for timer in timers:
-                    timer.start()
+                kill.start()
                 last = -self._pause
                 for line in run.stdout:
-                    is_generation = line.startswith("generation ")
-                    generations += is_generation
-                    if is_generation and time.monotonic() - last >= self._pause:
+                    if not line.startswith("generation "):
+                        continue
+                    generations += 1
+                    if generations == 1:
+                        stop.start()
+                    if time.monotonic() - last >= self._pause:
                         samples += self._sample(sitting, int(line.split()[1]), run.pid)
                         last = time.monotonic()
                 code = run.wait()
             finally:
-                for timer in timers:
-                    timer.cancel()
+                stop.cancel()
+                kill.cancel()
                 run.kill()
                 run.stdout.close()
                 run.wait()

@@ -54,12 +54,13 @@ class Bisection {
     return longest;
   }
 
-  /// The number of these masses, from the first on, that have `below` of `count` shares of their load.
+  /// The number of these masses, from the first on, that have `below` of `count` shares of their load, if that leaves a
+  /// mass for each part.
   std::size_t masses_below(Masses masses, unsigned below, unsigned count) const {
     std::size_t total = 0, sum = 0, number = 0;
     for (const std::uint32_t mass : masses) total += load_[mass];
     while (number < masses.size() && sum * count < total * below) sum += load_[masses[number++]];
-    return number;
+    return std::clamp<std::size_t>(number, below, masses.size() - (count - below));
   }
 
   const Outline& body_;
@@ -91,13 +92,11 @@ class HaloIndex {
 
 }  // namespace
 
-std::vector<std::uint32_t> parts_of_masses(const Outline& body, unsigned parts) {
-  return Bisection(body).parts(std::max(parts, 1u));
-}
+std::vector<std::uint32_t> parts_of_masses(const Outline& body, unsigned parts) { return Bisection(body).parts(parts); }
 
 std::vector<Part> partition(const Outline& body, unsigned count) {
   const std::vector<std::uint32_t> part_of = parts_of_masses(body, count);
-  std::vector<Part> parts(std::max(count, 1u));
+  std::vector<Part> parts(count);
   std::vector<std::uint32_t> local(part_of.size());
   for (std::uint32_t mass = 0; mass < part_of.size(); ++mass) {
     Part& part = parts[part_of[mass]];

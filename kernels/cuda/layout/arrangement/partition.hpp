@@ -16,10 +16,11 @@ struct Part {
 };
 
 /// The part of each mass. Parts are divided from each other by planes at right angles to the longest side of what they
-/// divide, so that few springs are cut, and have similar numbers of springs. There is at least one part.
+/// divide, so that few springs are cut, and have similar numbers of springs. Each part has a mass: `parts` is at least
+/// 1, and at most the number of masses.
 std::vector<std::uint32_t> parts_of_masses(const Outline& body, unsigned parts);
 
-/// The parts of a body; some may have no masses.
+/// The parts of a body, each of which has a mass.
 std::vector<Part> partition(const Outline& body, unsigned parts);
 
 }  // namespace evodevo::cuda
