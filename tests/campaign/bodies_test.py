@@ -66,6 +66,7 @@ class RandomBodies(unittest.TestCase):
         self.assertEqual(sum(each.tried for each in outcomes), 2 * BATCHES * GPU)
         found = [fault for each in outcomes for fault in each.found]
         self.assertEqual(found, [f"hostile_bodies cuda 30 1 {GPU}: body 3: hot"])
+        self.assertEqual({each.part for each in outcomes}, {"gpu-bodies"})
 
     def test_a_crash_is_named_by_its_batch_and_the_others_are_tried(self):
         outcomes = self.sittings("exit 7", number=3)

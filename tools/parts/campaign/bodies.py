@@ -12,7 +12,7 @@ import signal
 import subprocess
 import time
 
-from .outcomes import Outcome
+from .outcomes import Outcome, on_device
 
 BODIES = {"cpu": 256, "cuda": 2048}  # in a batch; more on a GPU, because each batch needs kernels that must be compiled
 BATCHES = 24  # of one process: each method in both precisions, with tame bodies and with others
@@ -28,9 +28,8 @@ FAULTY = 9  # exit code of a sanitizer that found something
 class Bodies:
     """Batches follow from their numbers, which go on from sitting to sitting."""
 
-    name = "bodies"
-
     def __init__(self, program, device, seconds=SECONDS):
+        self.name = on_device("bodies", device)
         self._program, self._device, self._seconds = program, device, seconds
         self._bodies = BODIES[device]
 

@@ -15,7 +15,7 @@ import tomlkit
 from common.command_line import Failure
 
 from .calls import Broken
-from .outcomes import Outcome
+from .outcomes import Outcome, on_device
 from .random_experiment import Draw, without
 
 BATCH = 20  # experiments of one outcome, of whose first run the page is opened
@@ -43,9 +43,8 @@ class Experiments:
     small as it can be while that law stays broken, and kept in DIR/found. As many experiments are tried at once as there
     are `laws`, each of which tries one."""
 
-    name = "experiments"
-
     def __init__(self, operators, laws, folder, device="cpu"):
+        self.name = on_device("experiments", device)
         self._operators, self._jobs, self._device = operators, len(laws), device
         self._left_out = laws[0].left_out
         self._free = queue.SimpleQueue()
