@@ -170,6 +170,7 @@ TEST_F(ForeignRecord, WhatDoesNotFitTogetherIsNamed) {
       {"UPDATE individuals SET origin = born + 1", "individuals.origin"},
       {"INSERT INTO memory VALUES(0, x'00')", "memory.generation"},
       {"INSERT INTO record VALUES('journal', 'of travels')", "\"of travels\""},
+      {"INSERT INTO record VALUES('seconds', 'many')", "\"seconds\""},
       {"INSERT INTO note_titles VALUES(0, 'novelty', 'm', 0)", "novelty in m"},
       {"INSERT INTO notes VALUES(999, 0, 0, 1)", "notes.individual"},
       {"INSERT INTO measured SELECT id, 0, 1 FROM individuals WHERE died IS NULL", "1 measures"},

@@ -514,7 +514,8 @@ TEST(SceneJson, SaysWhatIsThere) {
 }
 
 TEST(Page, SaysWhereItIsTooLarge) {
-  EXPECT_EQ(size_note("r.html", 29'999'999, "--best"), "");
+  EXPECT_EQ(size_note("r.html", 30'000'000, "--best"), "");
+  EXPECT_NE(size_note("r.html", 30'000'001, "--best"), "");
   EXPECT_THAT(size_note("r.html", 41'000'000, "--best"),
               ::testing::AllOf(::testing::HasSubstr("r.html: has 41 MB"), ::testing::HasSubstr("--best\n")));
 }
