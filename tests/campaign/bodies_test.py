@@ -80,7 +80,7 @@ class RandomBodies(unittest.TestCase):
         with unittest.mock.patch("os.cpu_count", return_value=3 * AT_ONCE):
             self.assertEqual((processes("cpu"), processes("cuda")), (3 * AT_ONCE, AT_ONCE))
 
-    def test_what_a_program_says_last_is_told(self):
+    def test_what_a_program_says_before_it_fails_is_told(self):
         found = [fault for each in self.sittings("echo no room >&2; exit 2") for fault in each.found]
         self.assertEqual(found, [f"hostile_bodies cuda 30 1 {GPU}: exit code 2: no room"])
 
