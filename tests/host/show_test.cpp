@@ -1,0 +1,50 @@
+// What `evodevo show` prints of a run.
+#include <gtest/gtest.h>
+
+#include <iostream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "commands/commands.hpp"
+#include "evolution/archive/archive.hpp"
+#include "support/experiments.hpp"
+#include "support/scratch.hpp"
+
+namespace evodevo {
+namespace {
+
+/// Returns the numbers of the generations that `show` prints of a run of `count` generations.
+std::vector<std::uint32_t> generations_shown(std::uint32_t count) {
+  const testing::Scratch scratch;
+  const auto folder = scratch / "run";
+  Archive archive = Archive::create(folder, testing::read(testing::small_experiment), "cpu");
+  for (std::uint32_t generation = 0; generation < count; ++generation) {
+    Individual individual;
+    individual.id = individual.born = individual.origin = generation;
+    individual.genome = {0.5f};
+    individual.result.objectives = {0.3, 1};
+    archive.commit({individual}, {}, {}, {.generation = generation, .evaluations = generation + 1});
+  }
+  ::testing::internal::CaptureStdout();
+  call(command_named("show"), {folder.string()});
+  std::cout.flush();
+  std::istringstream shown(::testing::internal::GetCapturedStdout());
+  std::vector<std::uint32_t> numbers;
+  for (std::string line; std::getline(shown, line);) {
+    std::uint32_t generation = 0, evaluations = 0;
+    std::istringstream row(line);
+    if (row >> generation >> evaluations && evaluations == generation + 1) numbers.push_back(generation);
+  }
+  return numbers;
+}
+
+TEST(Show, PrintsSomeTwentyGenerationsAndTheLast) {
+  EXPECT_EQ(generations_shown(20).size(), 20u);
+  EXPECT_EQ(generations_shown(21), (std::vector<std::uint32_t>{0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20}));
+  EXPECT_EQ(generations_shown(40).size(), 21u);
+  EXPECT_EQ(generations_shown(40).back(), 39u);
+}
+
+}  // namespace
+}  // namespace evodevo
