@@ -13,6 +13,7 @@
 
 #include "evolution/archive/archive.hpp"
 #include "evolution/archive/database.hpp"
+#include "support/archives.hpp"
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
 #include "support/scratch.hpp"
@@ -42,14 +43,6 @@ class ArchiveStorage : public ::testing::Test {
     return Archive::create(folder_, experiment_, "cpu", journal);
   }
 
-  static void commit(Archive& archive, std::uint32_t generation) {
-    Individual individual;
-    individual.id = individual.born = individual.origin = generation;
-    individual.genome = {0.5f};
-    individual.result.objectives = {0.3, 1};
-    archive.commit({individual}, {}, {}, {.generation = generation, .evaluations = generation + 1});
-  }
-
   std::size_t generations() const { return Archive::read(folder_).generations().size(); }
 
   testing::Scratch scratch_;
@@ -71,7 +64,7 @@ TEST_F(ArchiveStorage, TheFileAloneFollowsTheRun) {
   std::uint32_t generation = 0;
   const auto give_up = std::chrono::steady_clock::now() + std::chrono::minutes(1);
   do {
-    commit(archive, generation++);
+    testing::commit_one(archive, generation++);
   } while (generations_alone() == 0 && std::chrono::steady_clock::now() < give_up);
   EXPECT_GT(generations_alone(), 0u) << "and while it goes on";
 }
@@ -89,9 +82,9 @@ TEST_P(LostFile, EndsTheRunAtTheNextCommit) {
     if (journal == Journal::rollback && std::string(GetParam().name) == "LogRemoved") continue;
     SCOPED_TRACE(name(journal));
     Archive archive = created(journal);
-    commit(archive, 0);
+    testing::commit_one(archive, 0);
     GetParam().happen(folder_);
-    EXPECT_THAT(refusal<StorageError>([&] { commit(archive, 1); }),
+    EXPECT_THAT(refusal<StorageError>([&] { testing::commit_one(archive, 1); }),
                 testing::at_place(folder_.string() + ": run.sqlite", "removed", "moved", "replaced", " resume"));
     EXPECT_FALSE(archive.is_in_place());
     for (const char* end : {"", " elsewhere"}) fs::remove_all(folder_.string() + end);
@@ -121,7 +114,7 @@ TEST_F(ArchiveStorage, AReaderKeepsNobodyFromGoingOn) {
     Archive archive = Archive::resume(folder_);
     const Archive beside = Archive::read(folder_);
     EXPECT_EQ(beside.generations().size(), 0u);
-    commit(archive, 0);
+    testing::commit_one(archive, 0);
     EXPECT_EQ(before.generations().size() + beside.generations().size(), 0u) << "they read of one moment";
     EXPECT_EQ(generations(), 1u);
     fs::remove_all(folder_);
@@ -131,7 +124,7 @@ TEST_F(ArchiveStorage, AReaderKeepsNobodyFromGoingOn) {
 TEST_F(ArchiveStorage, WritersTakeTurns) {
   constexpr std::uint32_t rounds = 200;
   Archive run = created();
-  commit(run, 0);
+  testing::commit_one(run, 0);
   std::string failure = "none";
   std::thread verifier([&] {
     try {
@@ -142,7 +135,7 @@ TEST_F(ArchiveStorage, WritersTakeTurns) {
       failure = error.what();
     }
   });
-  for (std::uint32_t generation = 1; generation < rounds; ++generation) commit(run, generation);
+  for (std::uint32_t generation = 1; generation < rounds; ++generation) testing::commit_one(run, generation);
   verifier.join();
   EXPECT_EQ(failure, "none");
   EXPECT_EQ(generations(), rounds);
@@ -173,12 +166,12 @@ class WithoutSharedMemory : public ArchiveStorage {
 TEST_F(WithoutSharedMemory, ARunKeepsAnotherJournal) {
   {
     Archive archive = created();
-    commit(archive, 0);
+    testing::commit_one(archive, 0);
     EXPECT_FALSE(fs::exists(log_));
   }
   {
     Archive archive = Archive::resume(folder_);
-    commit(archive, 1);
+    testing::commit_one(archive, 1);
   }
   EXPECT_EQ(generations(), 2u);
 }
@@ -194,7 +187,7 @@ TEST_F(WithoutSharedMemory, ARunWithALogGoesOnByAnotherJournal) {
   {
     sqlite3_vfs_register(sqlite3_vfs_find("unix"), 1);
     Archive archive = created(Journal::wal);
-    commit(archive, 0);
+    testing::commit_one(archive, 0);
     fs::copy_file(file_, killed / "run.sqlite");
     fs::copy_file(log_, killed / "run.sqlite-wal");
   }
@@ -202,7 +195,7 @@ TEST_F(WithoutSharedMemory, ARunWithALogGoesOnByAnotherJournal) {
   EXPECT_THAT(refusal<ArchiveError>([&] { Archive::read(killed); }),
               AllOf(StartsWith(killed.string()), HasSubstr("--journal delete")));
   Archive archive = Archive::resume(killed, Journal::rollback);
-  commit(archive, 1);
+  testing::commit_one(archive, 1);
   EXPECT_EQ(archive.generations().size(), 2u);
 }
 
@@ -221,7 +214,7 @@ TEST(Journals, AreChosenByTheFileSystem) {
 TEST_F(ArchiveStorage, AWishForAJournalIsRemembered) {
   { created(Journal::rollback); }
   Archive archive = Archive::resume(folder_);
-  commit(archive, 0);
+  testing::commit_one(archive, 0);
   EXPECT_FALSE(fs::exists(log_));
 }
 
@@ -254,7 +247,7 @@ TEST_F(ArchiveStorage, ARunThatStoredNothingCanBeBegunAgain) {
     EXPECT_FALSE(is_begun(folder_));
     Archive archive = created(journal);
     EXPECT_TRUE(is_begun(folder_));
-    commit(archive, 0);
+    testing::commit_one(archive, 0);
     EXPECT_EQ(generations(), 1u);
     fs::remove_all(folder_);
   }
@@ -317,7 +310,7 @@ TEST_F(ArchiveStorage, WhatStandsInTheTablesPlaceIsNotRun) {
       .exec("CREATE TRIGGER spoil AFTER INSERT ON generations BEGIN DELETE FROM individuals; END");
   {
     Archive archive = Archive::resume(folder_);
-    commit(archive, 0);
+    testing::commit_one(archive, 0);
   }
   EXPECT_TRUE(Archive::read(folder_).individual(0).has_value()) << "triggers of others do nothing";
 }

@@ -7,6 +7,7 @@
 
 #include "evolution/archive/archive_writer.hpp"
 #include "evolution/archive/schema.hpp"
+#include "support/archives.hpp"
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
 #include "support/scratch.hpp"
@@ -174,12 +175,7 @@ TEST_F(ArchiveTest, AWriterThrowsWhatGoesWrong) {
 
 TEST_F(ArchiveTest, TellsWhatEvaluatedAnIndividual) {
   const auto commit = [](Archive& archive, const Provenance& provenance, std::uint32_t id) {
-    Individual individual;
-    individual.id = individual.born = individual.origin = id;
-    individual.genome = {0.5F};
-    individual.result.objectives = {1, 1};
-    individual.provenance = archive.add_provenance(provenance);
-    archive.commit({individual}, {}, {}, {.generation = id, .evaluations = id + 1});
+    testing::commit_one(archive, id, archive.add_provenance(provenance));
   };
   const Provenance first = this_provenance(experiment_, "a device");
   Provenance elsewhere = first, rebuilt = first, other_operator = first, moved = first;

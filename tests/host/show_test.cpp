@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "commands/commands.hpp"
-#include "evolution/archive/archive.hpp"
+#include "support/archives.hpp"
 #include "support/experiments.hpp"
 #include "support/scratch.hpp"
 
@@ -19,13 +19,7 @@ std::vector<std::uint32_t> generations_shown(std::uint32_t count) {
   const testing::Scratch scratch;
   const auto folder = scratch / "run";
   Archive archive = Archive::create(folder, testing::read(testing::small_experiment), "cpu");
-  for (std::uint32_t generation = 0; generation < count; ++generation) {
-    Individual individual;
-    individual.id = individual.born = individual.origin = generation;
-    individual.genome = {0.5f};
-    individual.result.objectives = {0.3, 1};
-    archive.commit({individual}, {}, {}, {.generation = generation, .evaluations = generation + 1});
-  }
+  for (std::uint32_t generation = 0; generation < count; ++generation) testing::commit_one(archive, generation);
   ::testing::internal::CaptureStdout();
   call(command_named("show"), {folder.string()});
   std::cout.flush();

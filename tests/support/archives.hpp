@@ -1,0 +1,18 @@
+// Archives for tests.
+#pragma once
+
+#include "evolution/archive/archive.hpp"
+
+namespace evodevo::testing {
+
+/// Commits a generation in which one individual is born, whose number is that of the generation.
+inline void commit_one(Archive& archive, std::uint32_t generation, std::uint32_t provenance = 0) {
+  Individual individual;
+  individual.id = individual.born = individual.origin = generation;
+  individual.genome = {0.5f};
+  individual.result.objectives = {0.3, 1};
+  individual.provenance = provenance;
+  archive.commit({individual}, {}, {}, {.generation = generation, .evaluations = generation + 1});
+}
+
+}  // namespace evodevo::testing
