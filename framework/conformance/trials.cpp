@@ -273,7 +273,7 @@ SampleLife sample_life(const Subject& subject, const Devo& op, std::uint64_t see
     life.living.state.position.push_back(life.resets ? position : 1.25 * position);
     life.living.state.velocity.push_back({rng.uniform(-1, 1), 0, 0});
   }
-  const bool may_be_parallel = input % 4 == 1;  // springs that join the same masses, as voxels with springs of their own have
+  const bool may_be_parallel = input % 4 == 1;  // as in voxels with springs of their own
   std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
   for (std::uint32_t i = 0; i < 5 * masses; ++i) {
     const std::uint32_t a = rng.below(masses), b = rng.below(masses);

@@ -30,7 +30,7 @@ case $tool in
 esac
 """
 
-GPU = BODIES["cuda"]
+IN_BATCH = BODIES["cuda"]
 
 
 class RandomBodies(unittest.TestCase):
@@ -63,30 +63,30 @@ class RandomBodies(unittest.TestCase):
 
     def test_the_next_sitting_goes_on(self):
         outcomes = self.sittings(f"found='\"body 3: hot\"'")
-        self.assertEqual(sum(each.tried for each in outcomes), 2 * BATCHES * GPU)
+        self.assertEqual(sum(each.tried for each in outcomes), 2 * BATCHES * IN_BATCH)
         found = [fault for each in outcomes for fault in each.found]
-        self.assertEqual(found, [f"hostile_bodies cuda 30 1 {GPU}: body 3: hot"])
+        self.assertEqual(found, [f"hostile_bodies cuda 30 1 {IN_BATCH}: body 3: hot"])
         self.assertEqual({each.part for each in outcomes}, {"gpu-bodies"})
 
     def test_a_crash_is_named_by_its_batch_and_the_others_are_tried(self):
         outcomes = self.sittings("exit 7", number=3)
         found = [fault for each in outcomes for fault in each.found]
-        self.assertEqual(found, [f"hostile_bodies cuda 30 1 {GPU}: exit code 7"])
+        self.assertEqual(found, [f"hostile_bodies cuda 30 1 {IN_BATCH}: exit code 7"])
         tried = {what: sum(each.tried for each in outcomes if each.case == what) for what in ("kind 0", "kind 1", "not done")}
-        half = 3 * BATCHES * GPU // 2
-        self.assertEqual(tried, {"kind 0": half - GPU, "kind 1": half, "not done": GPU})
+        half = 3 * BATCHES * IN_BATCH // 2
+        self.assertEqual(tried, {"kind 0": half - IN_BATCH, "kind 1": half, "not done": IN_BATCH})
 
-    def test_a_gpu_gets_no_more_processes_than_it_has_memory_for(self):
+    def test_a_gpu_gets_few_processes(self):
         with unittest.mock.patch("os.cpu_count", return_value=3 * AT_ONCE):
             self.assertEqual((processes("cpu"), processes("cuda")), (3 * AT_ONCE, AT_ONCE))
 
     def test_what_a_program_says_before_it_fails_is_told(self):
         found = [fault for each in self.sittings("echo no room >&2; exit 2") for fault in each.found]
-        self.assertEqual(found, [f"hostile_bodies cuda 30 1 {GPU}: exit code 2: no room"])
+        self.assertEqual(found, [f"hostile_bodies cuda 30 1 {IN_BATCH}: exit code 2: no room"])
 
     def test_a_hang_is_named(self):
         found = [fault for each in self.sittings("sleep 1000", seconds=1) for fault in each.found]
-        self.assertEqual(found, [f"hostile_bodies cuda 30 1 {GPU}: not done after 1 s"])
+        self.assertEqual(found, [f"hostile_bodies cuda 30 1 {IN_BATCH}: not done after 1 s"])
 
     def test_a_program_that_was_not_built_is_left_out(self):
         (outcome,) = Bodies(self.folder / "hostile_bodies", "cuda").sitting(0, ())

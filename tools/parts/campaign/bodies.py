@@ -12,13 +12,13 @@ import signal
 import subprocess
 import time
 
-from .outcomes import Outcome, on_device
+from .outcomes import Outcome, name_on_device
 
 BODIES = {"cpu": 256, "cuda": 2048}  # in a batch; more on a GPU, because each batch needs kernels that must be compiled
 BATCHES = 24  # of one process: each method in both precisions, with tame bodies and with others
 SECONDS = 120  # without a word, after which a process hangs
 KEPT = 60  # s of outcomes that become one
-AT_ONCE = 8  # processes for which a GPU has memory
+AT_ONCE = 8  # processes on a GPU; of 16 on an H200, some failed
 SANITIZERS = ("memcheck", "racecheck", "initcheck", "synccheck")
 FORMS = 96  # batches after which each kind has been there
 SANITIZED = 6  # bodies in a batch under a sanitizer
@@ -29,7 +29,7 @@ class Bodies:
     """Batches follow from their numbers, which go on from sitting to sitting."""
 
     def __init__(self, program, device, seconds=SECONDS):
-        self.name = on_device("bodies", device)
+        self.name = name_on_device("bodies", device)
         self._program, self._device, self._seconds = program, device, seconds
         self._bodies = BODIES[device]
 
@@ -58,7 +58,7 @@ class Bodies:
         while first < end:
             began = time.monotonic()
             told, fault = output([self._program, self._device, first, end - first, self._bodies], self._seconds)
-            results = [json.loads(line) for line in told.splitlines() if line.startswith("{") and line.endswith("}")]
+            results = results_in(told)
             if fault:
                 found = [f"{fault}{first_complaint(told)}"]
                 batch = first + len(results)
@@ -105,7 +105,7 @@ class Sanitizers:
         words = [self._program, self._device, batch, 1, SANITIZED]
         sanitizer = ["compute-sanitizer", "--tool", tool, "--error-exitcode", FAULTY]
         told, fault = output([*sanitizer, *words], self._seconds)
-        results = [json.loads(line) for line in told.splitlines() if line.startswith("{") and line.endswith("}")]
+        results = results_in(told)
         found = [each for result in results for each in result["found"]]
         if fault or not results:
             found.append(f"{fault or 'no result'}{first_complaint(told)}")
@@ -131,6 +131,7 @@ def merged(outcomes):
 
 
 def processes(device):
+    """Returns how many processes simulate at once."""
     cores = os.cpu_count() or 1
     return cores if device == "cpu" else min(cores, AT_ONCE)
 
@@ -154,6 +155,11 @@ def output(command, seconds):
             told += some
         os.killpg(process.pid, signal.SIGKILL)
         return told.decode(errors="replace"), f"not done after {seconds} s"
+
+
+def results_in(told):
+    """Returns the result of each batch that the program tells, of which it may not have told the last one to the end."""
+    return [json.loads(line) for line in told.splitlines() if line.startswith("{") and line.endswith("}")]
 
 
 def first_complaint(told):

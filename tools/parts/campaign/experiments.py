@@ -15,7 +15,7 @@ import tomlkit
 from common.command_line import Failure
 
 from .calls import Broken
-from .outcomes import Outcome, on_device
+from .outcomes import Outcome, name_on_device
 from .random_experiment import Draw, without
 
 BATCH = 20  # experiments of one outcome, of whose first run the page is opened
@@ -33,7 +33,9 @@ def listed_operators(program):
 
 @dataclasses.dataclass(frozen=True)
 class Trial:
-    accepted: bool
+    """An experiment that was tried."""
+
+    accepted: bool  # by `evodevo check`
     fault: str | None
     seconds: float
 
@@ -44,7 +46,7 @@ class Experiments:
     are `laws`, each of which tries one."""
 
     def __init__(self, operators, laws, folder, device="cpu"):
-        self.name = on_device("experiments", device)
+        self.name = name_on_device("experiments", device)
         self._operators, self._jobs, self._device = operators, len(laws), device
         self._left_out = laws[0].left_out
         self._free = queue.SimpleQueue()

@@ -18,7 +18,7 @@ class Outcome:
     covered: int | None = None  # number of edges of the program's control flow that were taken so far
 
 
-def on_device(part, device):
+def name_on_device(part, device):
     """Returns the name of a part that simulates on a device, so that what was tried on each is counted for itself."""
     return part if device == "cpu" else f"gpu-{part}"
 
