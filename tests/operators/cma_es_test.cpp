@@ -313,22 +313,5 @@ TEST(CmaEs, ThePathStaysInProportionWhenTheDistributionIsLimited) {
   EXPECT_NEAR(path_after(30) / path_after(0.01), 1, 0.2);
 }
 
-/// Tutorial, equation 53: with the default settings, the weights of the better half sum to 1, and the greatest is the
-/// first.
-TEST(CmaSettings, FulfilWhatTheTutorialSaysOfThem) {
-  for (const std::size_t children : {2, 3, 7, 10, 100})
-    for (const double n : {1, 2, 10, 500}) {
-      const CmaSettings settings(children, n);
-      double better = 0, worse = 0;
-      for (const double weight : settings.weights) (weight > 0 ? better : worse) += weight;
-      EXPECT_NEAR(better, 1, 1e-12);
-      EXPECT_LE(worse, 0);
-      EXPECT_TRUE(std::is_sorted(settings.weights.rbegin(), settings.weights.rend()));
-      EXPECT_LE(settings.rank_one + settings.rank_mu, 1);
-      // the covariance stays positive definite: what is taken away is less than what is kept
-      EXPECT_GE(1 - settings.rank_one - settings.rank_mu + n * settings.rank_mu * worse, -1e-12);
-    }
-}
-
 }  // namespace
 }  // namespace evodevo::test
