@@ -118,6 +118,7 @@ class Sources(unittest.TestCase):
             'x = "more than " + y;',
             "static_assert(a < 7 && sizeof(b) == 4);",
             "std::vector<int> a; T&& b; int* c; d = -e; f->g = h; i = 0x1p-52; j = 0.0; k = 10ms;",
+            "seconds(30); std::chrono::minutes patience{30};",
             "{ return f(a); } throw g(b); T h(c); i.reserve(n);",
         ):
             with self.subTest(text):

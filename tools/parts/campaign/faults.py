@@ -19,6 +19,7 @@ OPERATORS = {"+": "-", "-": "+", "*": "/", "/": "*", "+=": "-=", "-=": "+=", "&&
 BOUNDS = {"<": "<=", "<=": "<", ">": ">=", ">=": ">"}
 NO_CALLS = {"return", "throw", "if", "for", "while", "switch", "catch", "sizeof", "decltype", "delete", "static_assert"}
 ONLY_SPEED = {"reserve", "shrink_to_fit"}  # calls that change no result
+DURATIONS = {"hours", "minutes", "seconds", "milliseconds", "microseconds"}  # of which a little more changes no result
 KINDS = ("operator", "bound", "constant", "call")
 
 
@@ -42,7 +43,7 @@ def faults(text):
     for i, token in enumerate(tokens):
         asserted = (asserted and token.group() != ";") or token.group() == "static_assert"
         if not asserted:
-            found += _sign(tokens, i, text) + _constant(token) + _call(tokens, i)
+            found += _sign(tokens, i, text) + _constant(tokens, i) + _call(tokens, i)
     return found
 
 
@@ -60,8 +61,9 @@ def _sign(tokens, i, text):
     return []
 
 
-def _constant(token):
-    if token.lastgroup != "number":
+def _constant(tokens, i):
+    token = tokens[i]
+    if token.lastgroup != "number" or DURATIONS.intersection(beside.group() for beside in tokens[max(0, i - 3) : i]):
         return []
     parts = re.fullmatch(r"(\d[\d']*|0[xX][\da-fA-F']+)([uUlLzZ]*)", token.group())
     if parts:
