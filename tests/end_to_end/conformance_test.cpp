@@ -122,6 +122,9 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"surroundings", "surroundings", "failed", {"the locale", "calls"}},
         Broken{"names", "names", "failed", {"parameter \"genes\"", "<script>"}},
         Broken{"names_control", "names", "failed", {"parameter \"ge"}},
+        Broken{"names_objective", "names", "failed", {"name of an objective", "<b>way"}},
+        Broken{"names_unit", "names", "failed", {"unit of an objective", "control character"}},
+        Broken{"names_measure", "names", "failed", {"name of a measure", "<b>work"}},
         Broken{"crashing", "same-seed", "crashed", {"Segmentation fault"}}),
     [](const auto& broken) { return std::string(broken.param.plugin); });
 

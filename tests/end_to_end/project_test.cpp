@@ -78,6 +78,8 @@ TEST_F(NewProject, WithSeveralOperatorsUsesAllInOneExperiment) {
   EXPECT_EQ(names_in(root["crossover"]), (Words{"lab.mix"}));
   EXPECT_EQ(root["encoding"]["name"].value<std::string>(), "lab.cloud");
   EXPECT_EQ(root["selection"]["name"].value<std::string>(), "lab.best");
+  EXPECT_THAT(content("lab.growth/README.md"),
+              ::testing::HasSubstr("`lab.mix` (crossover) and `lab.best` (selection)"));
 }
 
 TEST_F(NewProject, NamesWhatCannotBeInOneProject) {

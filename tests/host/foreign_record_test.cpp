@@ -174,6 +174,10 @@ TEST_F(ForeignRecord, WhatDoesNotFitTogetherIsNamed) {
       {"INSERT INTO note_titles VALUES(0, 'novelty', 'm', 0)", "novelty in m"},
       {"INSERT INTO notes VALUES(999, 0, 0, 1)", "notes.individual"},
       {"INSERT INTO measured SELECT id, 0, 1 FROM individuals WHERE died IS NULL", "1 measures"},
+      {"INSERT INTO measured SELECT id, 1, 1 FROM individuals WHERE died IS NULL", "measured.measure"},
+      {"UPDATE scores SET objective = 7 WHERE objective = 1", "scores.objective"},
+      {"UPDATE objectives SET position = 7 WHERE position = 1", "objectives.position"},
+      {"UPDATE provenances SET provenance = 7", "provenances.provenance"},
   };
   ASSERT_TRUE(change("DELETE FROM provenances; DELETE FROM verifications"));
   const auto show = [&] { call(command_named("show"), {folder_.string(), "--json"}); };

@@ -62,6 +62,7 @@ TEST(Loader, TextsThatDisturbATerminalAreRefused) {
   EXPECT_THAT(refusal("controls_in_name"), of_text("mutation operator", "\"noth\\x1b[31ming\""));
   EXPECT_THAT(refusal("controls_in_summary"), of_text("summary", "\"Changes\\nnothing.\""));
   EXPECT_THAT(refusal("controls_in_version"), of_text("version", "\"1.0\\x07\""));
+  EXPECT_THAT(refusal("controls_in_licence"), of_text("licence", "\"MIT\\x07\""));
 }
 
 TEST(Loader, OnlyFilesAreLoaded) {
@@ -88,6 +89,7 @@ TEST(Loader, WhatAManifestLacksIsNamedAndDisturbsNoOther) {
       {"other_class", "devo operator \"nothing\"", "class", "operator_entry<Class>(...)"},
       {"null_toolchain", "toolchain", plugin_toolchain, rebuild},
       {"null_version", "version", "missing", "EVODEVO_PLUGIN(...)"},
+      {"empty_licence", "licence", "missing", "EVODEVO_PLUGIN(...)"},
       {"null_entries", "list of operators", "no", "EVODEVO_PLUGIN(...)"},
       {"constructor_throws_a_number", "mutation operator \"nothing\"", "std::exception", "must not throw"},
       {"static_throws", "while it is loaded", "crashes", "remove"}};

@@ -141,7 +141,13 @@ constexpr evodevo::PluginManifest manifest = {
 #else
     EVODEVO_PLUGIN_VERSION,
 #endif
+#if defined(FAULT_CONTROLS_IN_LICENCE)
+    "MIT\x07",
+#elif defined(FAULT_EMPTY_LICENCE)
+    "",
+#else
     EVODEVO_PLUGIN_LICENSE,
+#endif
 #if defined(FAULT_NULL_ENTRIES)
     nullptr,
 #else

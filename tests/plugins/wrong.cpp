@@ -98,6 +98,13 @@ struct Wrong final : evodevo::Devo {
   }
 };
 
+#elif defined(WRONG_NAMES_MEASURE)
+
+struct Wrong final : evodevo::Devo {
+  evodevo::Measure measure(evodevo::Causes::List) const override { return {"<b>work</b>", "J"}; }
+  void develop(const evodevo::DevoContext&, evodevo::Edits&, Rng&) const override {}
+};
+
 #elif defined(WRONG_DECODING_MEMORY)
 
 struct Wrong final : evodevo::Encoding {
@@ -118,11 +125,23 @@ struct Wrong final : evodevo::Encoding {
 };
 
 #elif defined(WRONG_TRANSLATION) || defined(WRONG_NAN_HIDDEN) || defined(WRONG_OBJECTIVES) || \
-    defined(WRONG_OBJECTIVES_NAN)
+    defined(WRONG_OBJECTIVES_NAN) || defined(WRONG_NAMES_OBJECTIVE) || defined(WRONG_NAMES_UNIT)
 
 struct Wrong final : evodevo::Fitness {
   evodevo::Request observes() const override { return {0, 0.1, false}; }
-  std::vector<evodevo::Objective> objectives() const override { return {{"way", "m", true}}; }
+#if defined(WRONG_NAMES_OBJECTIVE)
+  std::vector<evodevo::Objective> objectives() const override {
+    return {{ "<b>way</b>", "m", true }};
+  }
+#elif defined(WRONG_NAMES_UNIT)
+  std::vector<evodevo::Objective> objectives() const override {
+    return {{ "way", "m\n", true }};
+  }
+#else
+  std::vector<evodevo::Objective> objectives() const override {
+    return {{ "way", "m", true }};
+  }
+#endif
   std::vector<double> score(const evodevo::Observation& seen) const override {
     const double way = seen.centre_after.x - seen.centre_before.x;
 #if defined(WRONG_TRANSLATION)
@@ -131,8 +150,10 @@ struct Wrong final : evodevo::Fitness {
     return {std::isnan(way) ? 0 : way};
 #elif defined(WRONG_OBJECTIVES_NAN)
     return {-std::nan("") * way};
-#else
+#elif defined(WRONG_OBJECTIVES)
     return {way, way};
+#else
+    return {way};
 #endif
   }
 };
