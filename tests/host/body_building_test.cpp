@@ -24,6 +24,16 @@ Blueprint row(const std::vector<std::pair<double, std::int32_t>>& masses, std::u
   return blueprint;
 }
 
+/// Returns what check_blueprint() says of a blueprint for an encoding with the given context, or an empty text.
+std::string fault_of(const Blueprint& blueprint, const EncodingContext& context) {
+  try {
+    check_blueprint(blueprint, context);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
 TEST(BodyBuilding, JoinsNeighboursByTheMeanOfTheirMaterials) {
   const BuiltBody built = build_body(row({{0, 0}, {1, 1}, {3, 0}}, 1));
   ASSERT_EQ(built.failure, "");
@@ -116,18 +126,54 @@ TEST(BodyBuilding, SpringsToNeighboursHaveTheMeanSizeOfTheirMasses) {
   }
 }
 
+TEST(BodyBuilding, EachFaultOfABlueprintIsNamed) {
+  Blueprint sound = row({{0, no_material}, {1, 0}, {3, 1}}, 0);
+  sound.body.springs = {{0, 1, 0, 1}, {1, 2, 2, 0}};
+  const EncodingContext context{.materials = sound.body.materials};
+  sound.body.materials.push_back({500, 0.1, 1, 0});
+  EXPECT_EQ(fault_of(sound, context), "") << "an encoding may add materials";
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const auto fault = [&](const auto& spoil) {
+    Blueprint blueprint = sound;
+    spoil(blueprint.body);
+    return fault_of(blueprint, context);
+  };
+  const auto material = [&](const auto& spoil) { return fault([&](Body& body) { spoil(body.materials); }); };
+  EXPECT_THAT(material([](auto& all) { all[1].stiffness += 1; }), testing::at_place("material 1 ", "context"));
+  EXPECT_THAT(material([](auto& all) { all.resize(1); }), testing::at_place("material 1 ", "context"));
+  EXPECT_THAT(material([](auto& all) { all.clear(); }), testing::at_place("material 0 ", "context"));
+  const auto mass = [&](const auto& spoil) { return fault([&](Body& body) { spoil(body.masses[1]); }); };
+  for (const double value : {0.0, -0.1, infinity, std::nan("")})
+    EXPECT_THAT(mass([&](Mass& one) { one.mass = value; }), testing::at_place("mass 1 ", "above 0 kg")) << value;
+  EXPECT_THAT(mass([](Mass& one) { one.material = no_material - 1; }), testing::at_place("mass 1 ", "negative"));
+  EXPECT_THAT(mass([](Mass& one) { one.material = 3; }), testing::at_place("mass 1 ", "material 3", "3 materials"));
+  const auto spring = [&](const auto& spoil) { return fault([&](Body& body) { spoil(body.springs[1]); }); };
+  EXPECT_THAT(spring([](Spring& one) { one.a = 3; }), testing::at_place("spring 1 ", "mass 3", "3 masses"));
+  EXPECT_THAT(spring([](Spring& one) { one.b = 3; }), testing::at_place("spring 1 ", "mass 3", "3 masses"));
+  EXPECT_THAT(spring([](Spring& one) { one.a = one.b; }), testing::at_place("spring 1 ", "itself"));
+  EXPECT_THAT(spring([](Spring& one) { one.material = 3; }),
+              testing::at_place("spring 1 ", "material 3", "3 materials"));
+  for (const double value : {-0.1, infinity, std::nan("")})
+    EXPECT_THAT(spring([&](Spring& one) { one.rest_length = value; }), testing::at_place("spring 1 ", "rest length"))
+        << value;
+  for (const double value : {0.0, -0.1, infinity, std::nan("")})
+    EXPECT_THAT(spring([&](Spring& one) { one.growth = value; }), testing::at_place("spring 1 ", "growth")) << value;
+  for (const double value : {infinity, std::nan("")})
+    EXPECT_THAT(spring([&](Spring& one) { one.phase_growth = value; }), testing::at_place("spring 1 ", "phase_growth"))
+        << value;
+  for (const float value : {0.0F, -0.1F, static_cast<float>(infinity)})
+    EXPECT_THAT(spring([&](Spring& one) { one.stiffness_factor = value; }),
+                testing::at_place("spring 1 ", "stiffness_factor"))
+        << value;
+}
+
 TEST(BodyBuilding, ListsHoldAnEntryForEachMass) {
   const Blueprint sound = row({{0, 0}, {1, 0}, {3, 0}}, 1);
   const EncodingContext context{.materials = sound.body.materials};
   const auto fault = [&](auto Blueprint::*list, std::size_t entries) -> std::string {
     Blueprint blueprint = sound;
     (blueprint.*list).resize(entries);
-    try {
-      check_blueprint(blueprint, context);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "";
+    return fault_of(blueprint, context);
   };
   EXPECT_THAT(fault(&Blueprint::sizes, 2), testing::naming("2 ", "sizes", "3 masses"));
   EXPECT_THAT(fault(&Blueprint::paired_at, 4), testing::naming("4 ", "pair", "3 masses"));
@@ -140,12 +186,7 @@ TEST(BodyBuilding, NoTwoSpringsJoinOnePair) {
   const EncodingContext context{.materials = blueprint.body.materials};
   const auto fault = [&](std::vector<Spring> springs) -> std::string {
     blueprint.body.springs = std::move(springs);
-    try {
-      check_blueprint(blueprint, context);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "";
+    return fault_of(blueprint, context);
   };
   EXPECT_EQ(fault({{0, 1, 1, 0}, {2, 0, 1, 0}, {1, 2, 1, 0}, {3, 1, 1, 0}, {2, 3, 1, 0}}), "");
   EXPECT_THAT(fault({{0, 1, 1, 0}, {3, 2, 1, 0}, {2, 3, 1, 0}, {1, 0, 1, 0}}),
