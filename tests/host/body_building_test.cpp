@@ -161,7 +161,7 @@ TEST(BodyBuilding, EachFaultOfABlueprintIsNamed) {
   for (const double value : {infinity, std::nan("")})
     EXPECT_THAT(spring([&](Spring& one) { one.phase_growth = value; }), testing::at_place("spring 1 ", "phase_growth"))
         << value;
-  for (const float value : {0.0F, -0.1F, static_cast<float>(infinity)})
+  for (const double value : {0.0, -0.1, infinity, std::nan("")})
     EXPECT_THAT(spring([&](Spring& one) { one.stiffness_factor = value; }),
                 testing::at_place("spring 1 ", "stiffness_factor"))
         << value;
