@@ -113,10 +113,19 @@ TEST_F(Misbehaviour, ACrashIsNamedWithIndividualCycleAndSeed) {
   EXPECT_THAT(crash("encoding", "crash-in-layout"), HasSubstr(named("encoding") + ", seed 7: crashed"));
   EXPECT_THAT(crash("encoding", "crash"),
               ::testing::ContainsRegex("encoding operator .*, individual [0-5], seed 7: crashed"));
-  fs::remove_all(folder_);
-  const Finished at_end = testing::run(mutating("crash-at-end"));
-  EXPECT_EQ(at_end.exit_code, 128 + SIGSEGV);
-  EXPECT_THAT(at_end.output, HasSubstr(named("mutation") + ": crashed"));
+}
+
+TEST_F(Misbehaviour, ACrashWhenTheRunEndsIsNamed) {
+  const std::pair<std::string, std::string> tables[] = {{"encoding", "encoding"},
+                                                        {"mutation.0", "mutation"},
+                                                        {"development.operator.0", "devo"},
+                                                        {"fitness.0", "fitness"}};
+  for (const auto& [table, kind] : tables) {
+    fs::remove_all(folder_);
+    const Finished finished = testing::run(run_with(table, "crash-at-end"));
+    EXPECT_EQ(finished.exit_code, 128 + SIGSEGV) << kind << finished.output;
+    EXPECT_THAT(finished.output, HasSubstr(named(kind) + ": crashed"));
+  }
 }
 
 TEST_F(Misbehaviour, WhatItChangesForAllIsPutBackAndNamed) {

@@ -53,11 +53,13 @@ class RunOutput : public ::testing::Test {
 };
 
 TEST_F(RunOutput, FitsTheTerminal) {
-  for (const int columns : {30, 57, 250}) {
+  for (const int columns : {30, 36, 57, 250}) {
     const std::vector<std::string> lines = live_lines(run_on_terminal("TERM=xterm", columns));
     ASSERT_FALSE(lines.empty());
     for (const std::string& line : lines) EXPECT_LT(line.size(), static_cast<std::size_t>(columns)) << line;
     EXPECT_THAT(lines.back(), HasSubstr("evaluations 24/24")) << "the last line is always shown";
+    EXPECT_TRUE(columns < 36 || lines.back().find("best") != std::string::npos) << lines.back();
+    EXPECT_EQ(lines.back().find("generation") != std::string::npos, columns > 36) << lines.back();
     EXPECT_EQ(lines.back().find("diverged") != std::string::npos, columns == 250) << lines.back();
     fs::remove_all(folder_);
   }

@@ -1,6 +1,7 @@
 // Operators of every kind that load, but misbehave in the way that the parameter `how` names.
 #include <unistd.h>
 
+#include <atomic>
 #include <cfenv>
 #include <chrono>
 #include <clocale>
@@ -32,7 +33,8 @@ int deeper(int depth) {
   return endless ? deeper(depth + 1) + room[0] : depth;
 }
 
-/// Forks at the first call in a process and in all that descend from it. Returns what fork() does, or -1 at later calls.
+/// Forks at the first call in a process and in all that descend from it. Returns what fork() does, or -1 at later
+/// calls.
 pid_t fork_once() {
   static bool forked = false;
   return std::exchange(forked, true) ? -1 : fork();
@@ -55,13 +57,22 @@ struct OtherLocale {
   const locale_t handle = newlocale(LC_ALL_MASK, "C.UTF-8", nullptr);
 };
 
+/// Crashes when it is destroyed, if it was told to.
+class AtEnd {
+ public:
+  ~AtEnd() {
+    if (crashes_) std::raise(SIGSEGV);
+  }
+  void crash_if(bool crashes) const { crashes_ = crashes; }
+
+ private:
+  mutable std::atomic<bool> crashes_ = false;  // operators are called by several threads
+};
+
 struct Mutation final : evodevo::Mutation {
   std::string how = "well";
-  mutable bool called = false;
+  AtEnd at_end;
 
-  ~Mutation() override {
-    if (called && how == "crash-at-end") std::raise(SIGSEGV);
-  }
   void parameters(Parameters& p) override {
     p.choice(how, "how",
              {"well", "hang", "exit", "exit-at-once", "quick-exit", "overflow", "crash-at-end", "round", "flush",
@@ -69,7 +80,7 @@ struct Mutation final : evodevo::Mutation {
              "What it does.");
   }
   void mutate(evodevo::Genome&, const evodevo::Layout&, evodevo::Rng&) const override {
-    called = true;
+    at_end.crash_if(how == "crash-at-end");
     if (how == "hang") hang();
     if (how == "exit") std::exit(0);
     if (how == "exit-at-once") _exit(0);
@@ -90,9 +101,11 @@ struct Mutation final : evodevo::Mutation {
 
 struct Encoding final : evodevo::Encoding {
   std::string how = "well";
+  AtEnd at_end;
 
   void parameters(Parameters& p) override {
-    p.choice(how, "how", {"well", "crash-in-layout", "throw-in-layout", "twin", "turned-twin", "loop", "crash"},
+    p.choice(how, "how",
+             {"well", "crash-in-layout", "throw-in-layout", "twin", "turned-twin", "loop", "crash", "crash-at-end"},
              "What it does.");
   }
   evodevo::Layout layout(const evodevo::EncodingContext&) const override {
@@ -105,6 +118,7 @@ struct Encoding final : evodevo::Encoding {
   evodevo::Blueprint decode(const evodevo::Genome&, const evodevo::Layout&,
                             const evodevo::EncodingContext& context) const override {
     if (how == "crash") std::raise(SIGSEGV);
+    at_end.crash_if(how == "crash-at-end");
     evodevo::Blueprint blueprint;
     blueprint.body.materials = context.materials;
     blueprint.body.masses = {{{0, 0, 0}, 0.2}, {{0.7, 0, 0}, 0.2}, {{0, 0.7, 0}, 0.2}};
@@ -118,9 +132,11 @@ struct Encoding final : evodevo::Encoding {
 
 struct Devo final : evodevo::Devo {
   std::string how = "well";
+  AtEnd at_end;
 
   void parameters(Parameters& p) override {
-    p.choice(how, "how", {"well", "crash", "overflow", "crash-when-asked", "throw-when-asked"}, "What it does.");
+    p.choice(how, "how", {"well", "crash", "overflow", "crash-when-asked", "throw-when-asked", "crash-at-end"},
+             "What it does.");
   }
   evodevo::RecordRequest observes() const override {
     if (how == "crash-when-asked") std::raise(SIGSEGV);
@@ -128,6 +144,7 @@ struct Devo final : evodevo::Devo {
     return {};
   }
   void develop(const evodevo::DevoContext& context, evodevo::Edits&, evodevo::Rng&) const override {
+    at_end.crash_if(how == "crash-at-end");
     if (how == "crash" && context.cycle == 2) std::raise(SIGSEGV);
     if (how == "overflow" && context.cycle == 2) deeper(0);
   }
@@ -135,12 +152,13 @@ struct Devo final : evodevo::Devo {
 
 struct Fitness final : evodevo::Fitness {
   std::string how = "well";
+  AtEnd at_end;
 
   void parameters(Parameters& p) override {
     p.choice(how, "how",
              {"well", "no-window", "endless-window", "early-window", "window-that-is-no-number", "no-objective",
               "nameless-objective", "descriptor-without-cells", "descriptor-with-too-many-cells", "empty-descriptor",
-              "one-score-too-many"},
+              "one-score-too-many", "crash-at-end"},
              "What it does.");
   }
   evodevo::Request observes() const override {
@@ -159,6 +177,7 @@ struct Fitness final : evodevo::Fitness {
     return {{how == "nameless-objective" ? "" : "one", "1", true}};
   }
   std::vector<double> score(const evodevo::Observation&) const override {
+    at_end.crash_if(how == "crash-at-end");
     return std::vector<double>(how == "one-score-too-many" ? 2 : 1, 1.0);
   }
 };
