@@ -147,7 +147,8 @@ TEST_F(Misbehaviour, OnlyOneProcessGoesOnAfterAFork) {
     fs::remove_all(folder_);
     const Finished finished = testing::run(mutating(how));
     EXPECT_EQ(finished.exit_code, 0) << how << finished.output;
-    EXPECT_THAT(finished.output, HasSubstr("warning: " + named("mutation") + ", individual 6, seed 7: it called fork()"));
+    EXPECT_THAT(finished.output,
+                HasSubstr("warning: " + named("mutation") + ", individual 6, seed 7: it called fork()"));
     const std::size_t line = finished.output.find("\ngeneration 2 ");
     EXPECT_NE(line, std::string::npos) << how << finished.output;
     EXPECT_EQ(finished.output.find("\ngeneration 2 ", line + 1), std::string::npos) << how << finished.output;
@@ -165,7 +166,15 @@ TEST_F(Misbehaviour, WhatNoLifeCanBeMeasuredByIsRefused) {
       {"nameless-objective", "an objective without a name"},
       {"descriptor-without-cells", "has bins = 0; expected 1 to 1000"},
       {"descriptor-with-too-many-cells", "has bins = 1001; expected 1 to 1000"},
-      {"empty-descriptor", "has the range 1 to 1; expected"}};
+      {"empty-descriptor", "has the range 1 to 1; expected"},
+      {"samples-without-end", "11000000 samples per second for 0.1 s; expected"},
+      {"samples-below-0", "-1 samples per second for 0.1 s; expected"},
+      {"channels-without-samples", "Request::rate"},
+      {"before-birth", "from cycle -1 of development on; expected 0 to 1"},
+      {"after-the-last-cycle", "from cycle 1000 of development on; expected 0 to 1"},
+      {"beyond-the-life", "until 10001 s of the life"},
+      {"unknown-role", "the role 99"},
+      {"twin-scores", "already a score \"one\""}};
   for (const auto& [how, reason] : cases) {
     const Finished finished = testing::run(run_with("fitness.0", how));
     EXPECT_EQ(finished.exit_code, 2) << how << finished.output;
@@ -177,6 +186,25 @@ TEST_F(Misbehaviour, WhatNoLifeCanBeMeasuredByIsRefused) {
   EXPECT_EQ(scores.exit_code, 1);
   EXPECT_THAT(scores.output, testing::naming("2 scores", "objectives() has 1"));
   EXPECT_THAT(scores.output, HasSubstr(named("fitness") + ", individual "));
+}
+
+TEST_F(Misbehaviour, ASelectionThatChoosesWronglyIsNamed) {
+  const std::pair<const char*, const char*> cases[] = {{"no-parents", "Traits::chooses_parents"},
+                                                       {"too-few-parents", "4 pairs of parents, expected 5"},
+                                                       {"no-survivors", "Traits::chooses_survivors"}};
+  for (const auto& [how, reason] : cases) {
+    fs::remove_all(folder_);
+    const Finished finished = testing::run(run_with("selection", how));
+    EXPECT_EQ(finished.exit_code, 1) << how << finished.output;
+    EXPECT_THAT(finished.output, testing::naming(named("selection"), reason)) << how;
+  }
+  fs::remove_all(folder_);
+  for (const auto& [how, reason] : {std::pair("nameless-note", "notes()"), std::pair("twin-notes", "\"age\"")}) {
+    const Finished finished = testing::run(run_with("selection", how));
+    EXPECT_EQ(finished.exit_code, 2) << how << finished.output;
+    EXPECT_THAT(finished.output, testing::naming("selection.name = \"misbehaves\": ", reason)) << how;
+    EXPECT_FALSE(fs::exists(folder_));
+  }
 }
 
 TEST_F(Misbehaviour, WhatItThrowsIsNamedWhereverItIsCalled) {

@@ -1,4 +1,4 @@
-// Operators of every kind that load, but misbehave in the way that the parameter `how` names.
+// Operators of all kinds but crossover that load, but misbehave in the way that the parameter `how` names.
 #include <unistd.h>
 
 #include <atomic>
@@ -156,9 +156,26 @@ struct Fitness final : evodevo::Fitness {
 
   void parameters(Parameters& p) override {
     p.choice(how, "how",
-             {"well", "no-window", "endless-window", "early-window", "window-that-is-no-number", "no-objective",
-              "nameless-objective", "descriptor-without-cells", "descriptor-with-too-many-cells", "empty-descriptor",
-              "one-score-too-many", "crash-at-end"},
+             {"well",
+              "no-window",
+              "endless-window",
+              "early-window",
+              "window-that-is-no-number",
+              "no-objective",
+              "nameless-objective",
+              "descriptor-without-cells",
+              "descriptor-with-too-many-cells",
+              "empty-descriptor",
+              "one-score-too-many",
+              "crash-at-end",
+              "samples-without-end",
+              "samples-below-0",
+              "channels-without-samples",
+              "before-birth",
+              "after-the-last-cycle",
+              "beyond-the-life",
+              "unknown-role",
+              "twin-scores"},
              "What it does.");
   }
   evodevo::Request observes() const override {
@@ -166,6 +183,12 @@ struct Fitness final : evodevo::Fitness {
     if (how == "endless-window") return {0, std::numeric_limits<double>::infinity(), false};
     if (how == "early-window") return {-0.1, 0.1, false};
     if (how == "window-that-is-no-number") return {std::numeric_limits<double>::quiet_NaN(), 0.1, false};
+    if (how == "samples-without-end") return {.window = 0.1, .rate = 1.1e7};
+    if (how == "samples-below-0") return {.window = 0.1, .rate = -1};
+    if (how == "channels-without-samples") return {.window = 0.1, .channels = {.centre = true}};
+    if (how == "before-birth") return {.window = 0.1, .cycle = -1};
+    if (how == "after-the-last-cycle") return {.window = 0.1, .cycle = 1000};
+    if (how == "beyond-the-life") return {.settle = 1, .window = 1e4, .cycle = 0};
     return {0, 0.1, false};
   }
   std::vector<evodevo::Objective> objectives() const override {
@@ -173,6 +196,8 @@ struct Fitness final : evodevo::Fitness {
     if (how == "no-objective") return {};
     if (how == "descriptor-without-cells") return {{"one", "1", true, Role::descriptor, 0, 1, 0}};
     if (how == "descriptor-with-too-many-cells") return {{"one", "1", true, Role::descriptor, 0, 1, 1001}};
+    if (how == "unknown-role") return {{"one", "1", true, static_cast<Role>(99)}};
+    if (how == "twin-scores") return {{"one", "1", true}, {"one", "m", true}};
     if (how == "empty-descriptor") return {{"one", "1", true, Role::descriptor, 1, 1}};
     return {{how == "nameless-objective" ? "" : "one", "1", true}};
   }
@@ -182,10 +207,35 @@ struct Fitness final : evodevo::Fitness {
   }
 };
 
+struct Selection final : evodevo::Selection {
+  std::string how = "well";
+
+  void parameters(Parameters& p) override {
+    p.choice(how, "how", {"well", "no-parents", "too-few-parents", "no-survivors", "nameless-note", "twin-notes"},
+             "What it does.");
+  }
+  std::vector<evodevo::NoteTitle> notes() const override {
+    if (how == "nameless-note") return {{"age"}, {""}};
+    if (how == "twin-notes") return {{"age"}, {"size"}, {"age"}};
+    return {};
+  }
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const evodevo::Candidate> rows,
+                                                               std::uint32_t count, evodevo::Rng& rng) const override {
+    if (how == "no-parents") return evodevo::Selection::parents(rows, count, rng);
+    return std::vector<std::pair<std::uint32_t, std::uint32_t>>(how == "too-few-parents" ? count - 1 : count);
+  }
+  std::vector<std::uint32_t> survivors(std::span<const evodevo::Candidate> rows, std::uint32_t population,
+                                       evodevo::Rng& rng) const override {
+    if (how == "no-survivors") return evodevo::Selection::survivors(rows, population, rng);
+    return {0};
+  }
+};
+
 }  // namespace
 
 EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
                evodevo::operator_entry<Mutation>("misbehaves", "Does what it is told."),
                evodevo::operator_entry<Encoding>("misbehaves", "Does what it is told."),
                evodevo::operator_entry<Devo>("misbehaves", "Does what it is told."),
-               evodevo::operator_entry<Fitness>("misbehaves", "Does what it is told."))
+               evodevo::operator_entry<Fitness>("misbehaves", "Does what it is told."),
+               evodevo::operator_entry<Selection>("misbehaves", "Does what it is told."))
