@@ -310,6 +310,15 @@ TEST(Configuration, OutOfRange) {
               testing::at_place("test.toml:27:10: simulation.device = \"tpu\": ", "auto, cpu, cuda"));
 }
 
+TEST(Configuration, AtMostAThousandMaterialsAndPaths) {
+  std::string materials, paths = "'a'";
+  for (int i = 0; i < 1001; ++i) materials += "[materials.m" + std::to_string(i) + "]\nstiffness = 100\n";
+  for (int i = 0; i < 1000; ++i) paths += ", 'a'";
+  EXPECT_THAT(complaint(std::string(small_experiment) + materials), testing::naming("materials", "at most 1000"));
+  EXPECT_THAT(complaint(std::string(small_experiment) + "[plugins]\npaths = [" + paths + "]\n"),
+              testing::naming("plugins.paths", "at most 1000"));
+}
+
 TEST(Configuration, WholeNumbersMayHaveAPointOrAnExponent) {
   const auto read = [](const std::string& key, const std::string& value) {
     return testing::read(testing::small_experiment, {{key, value, "--set"}});

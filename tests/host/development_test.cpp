@@ -213,7 +213,14 @@ TEST(Development, FaultyEditsAreRefused) {
   EXPECT_THAT(Line().refusal({.removed_masses = {4}}), naming("removes mass 4", "only 4"));
   EXPECT_THAT(Line().refusal({.removed_springs = {0, 1}, .causes = {.removed_springs = {5}}}),
               naming("1 ", "2 removed springs"));
-  EXPECT_THAT(Line().refusal({.removed_springs = {0}, .causes = {.new_masses = {5}}}), naming("1 ", "0 new masses"));
+  for (const auto& [list, what] :
+       {std::pair{&Causes::removed_masses, "0 removed masses"},
+        std::pair{&Causes::changed_springs, "0 changed springs"}, std::pair{&Causes::new_masses, "0 new masses"},
+        std::pair{&Causes::new_springs, "0 new springs"}}) {
+    Edits edits{.removed_springs = {0}};
+    edits.causes.*list = {5};
+    EXPECT_THAT(Line().refusal(edits), naming("1 ", what));
+  }
   EXPECT_THAT(Line().refusal({.new_springs = {join(0, 4)}}), naming("masses 0 and 4", "no mass 4"));
   EXPECT_THAT(Line().refusal({.removed_masses = {2}, .new_springs = {join(0, 2)}}), naming("masses 0 and 2", "mass 2"));
   EXPECT_THAT(Line().refusal({.new_springs = {join(2, 2)}}), naming("masses 2 and 2"));
@@ -233,6 +240,12 @@ TEST(Development, FaultyEditsAreRefused) {
               naming("masses 0 and 2", "amplitude is 1;", "below 1"));
   EXPECT_THAT(Line().refusal({.new_springs = {{0, 2, {1, 0, 0, nan}, std::nullopt}}}),
               naming("masses 0 and 2", "frequency or phase", "not finite"));
+  EXPECT_THAT(Line().refusal({.new_springs = {{0, 2, {1, 0, nan, 0}, std::nullopt}}}),
+              naming("masses 0 and 2", "frequency or phase", "not finite"));
+  for (const double damping : {-0.1, nan, std::numeric_limits<double>::infinity()})
+    EXPECT_THAT(Line().refusal({.new_springs = {{0, 2, {1, 0, 0, 0, damping}, std::nullopt}}}),
+                naming("masses 0 and 2", "damping", "at least 0"));
+  EXPECT_EQ(Line().refusal({.new_springs = {{0, 2, {1, 0, 0, 0, 0.5}, std::nullopt}}}), "accepted");
 
   const auto grow = [](double from, double to, double whole) { return Edits{.growth = Growth{from, to, whole}}; };
   EXPECT_EQ(Line().refusal(grow(0, 1, 1)), "accepted");
