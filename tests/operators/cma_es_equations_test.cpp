@@ -10,22 +10,22 @@
 namespace evodevo::test {
 namespace {
 
-/// In one dimension, all vectors and matrices of the tutorial's equations are numbers.
+/// CMA-ES in one dimension, where all vectors and matrices are numbers, with the tutorial's symbols.
 class InOneDimension {
  public:
   explicit InOneDimension(double step) : sigma_(step) {
-    for (int i = 0; i < children; ++i) weights_[i] = std::log((children + 1) / 2.0) - std::log(i + 1.0);  // equation 49
+    for (int i = 0; i < children; ++i) weights_[i] = std::log((children + 1) / 2.0) - std::log(i + 1.0);
     double sum[2] = {}, squares[2] = {};  // of the better and of the worse half
     for (int i = 0; i < children; ++i) {
       sum[i >= 3] += weights_[i];
       squares[i >= 3] += weights_[i] * weights_[i];
     }
     mu_eff_ = sum[0] * sum[0] / squares[0];
-    c_sigma_ = (mu_eff_ + 2) / (1 + mu_eff_ + 5);  // equation 55; d_sigma is 1 + c_sigma for so few children
-    c_c_ = (4 + mu_eff_) / (1 + 4 + 2 * mu_eff_);  // equation 56
-    c_1_ = 2 / (2.3 * 2.3 + mu_eff_);              // equation 57
-    c_mu_ = 2 * (0.25 + mu_eff_ + 1 / mu_eff_ - 2) / (9 + mu_eff_);  // equation 58
-    // the second bound of equation 53, which is the least here
+    c_sigma_ = (mu_eff_ + 2) / (1 + mu_eff_ + 5);  // d_sigma is 1 + c_sigma for so few children
+    c_c_ = (4 + mu_eff_) / (1 + 4 + 2 * mu_eff_);
+    c_1_ = 2 / (2.3 * 2.3 + mu_eff_);
+    c_mu_ = 2 * (0.25 + mu_eff_ + 1 / mu_eff_ - 2) / (9 + mu_eff_);
+    // alpha_mu_eff, which is the least bound of the negative weights here
     const double negative = 1 + 2 * (sum[1] * sum[1] / squares[1]) / (mu_eff_ + 2);
     for (int i = 0; i < children; ++i) weights_[i] *= i < 3 ? 1 / sum[0] : -negative / sum[1];
   }
@@ -62,7 +62,7 @@ class InOneDimension {
   int g_ = 0;
 };
 
-/// The tutorial's Figure 6, with the settings of its Table 1.
+/// The tutorial's summary of CMA-ES, with the settings of its Table 1.
 TEST(CmaEs, InOneDimensionDoesWhatTheTutorialSays) {
   constexpr double step = 1e-6;  // far from the bounds, so that the images of points are those drawn
   InOneDimension expected(step);
