@@ -94,6 +94,7 @@ class Sources(unittest.TestCase):
     def test_constants(self):
         for one, other in (("7", "8"), ("0", "1"), ("10'000u", "10001u"), ("0x1F", "32"), ("2.0", "2.02"), ("5e-1f", "0.505f")):
             self.assertEqual(self.planted(f"x = {one};"), {"constant": [f"x = {other};"]})
+        self.assertEqual(self.planted("seconds = 1;"), {"constant": ["seconds = 2;"]})
 
     def test_calls(self):
         self.assertEqual(
@@ -118,7 +119,7 @@ class Sources(unittest.TestCase):
             'x = "more than " + y;',
             "static_assert(a < 7 && sizeof(b) == 4);",
             "std::vector<int> a; T&& b; int* c; d = -e; f->g = h; i = 0x1p-52; j = 0.0; k = 10ms;",
-            "seconds(30); std::chrono::minutes patience{30};",
+            "std::chrono::seconds(30); std::chrono::minutes patience{30};",
             "{ return f(a); } throw g(b); T h(c); i.reserve(n);",
         ):
             with self.subTest(text):

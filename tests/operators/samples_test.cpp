@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -24,28 +26,28 @@ class TwoSamples : public ::testing::Test {
     const auto before = std::make_shared<BodyVersion>(BodyVersion{body, {4, 7}});
     body.masses.push_back({{0, 1, 0}, 1});
     const auto after = std::make_shared<BodyVersion>(BodyVersion{body, {4, 7, 9}});
-    stored_ = {{3,
-                {1, 2, 3},
-                {0.1, 0, 0},
-                {{0, 0, 0}, {1, 1, 1}},
-                0.5,
-                7,
-                {0, 0, 0, 1, 0, 0},
-                {1, 2, 3, 4, 5, 6},
-                {0.5, 0.5},
-                {-2},
-                before},
-               {3.25,
-                {1, 2, 4},
-                {0.2, 0, 0},
-                {{0, 0, 0}, {2, 1, 1}},
-                0.625,
-                10,
-                {0, 0, 1, 1, 0, 1, 0, 1, 0},
-                {1, 2, 3, 4, 5, 6, 7, 8, 9},
-                {0.5, 0.75, 0.0625},
-                {3},
-                after}};
+    stored_ = {{.time = 3,
+                .centre = {1, 2, 3},
+                .velocity = {0.1, 0, 0},
+                .box = {{0, 0, 0}, {1, 1, 1}},
+                .contact_time = 0.5,
+                .work = 7,
+                .positions = {0, 0, 0, 1, 0, 0},
+                .velocities = {1, 2, 3, 4, 5, 6},
+                .contact_times = {0.5, 0.5},
+                .forces = {-2},
+                .version = before},
+               {.time = 3.25,
+                .centre = {1, 2, 4},
+                .velocity = {0.2, 0, 0},
+                .box = {{0, 0, 0}, {2, 1, 1}},
+                .contact_time = 0.625,
+                .work = 10,
+                .positions = {0, 0, 1, 1, 0, 1, 0, 1, 0},
+                .velocities = {1, 2, 3, 4, 5, 6, 7, 8, 9},
+                .contact_times = {0.5, 0.75, 0.0625},
+                .forces = {3},
+                .version = after}};
   }
 
   Samples seen(const Channels& channels) const { return {{&stored_[0], &stored_[1]}, channels}; }

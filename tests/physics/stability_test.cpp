@@ -3,13 +3,14 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
 #include <cmath>
 #include <limits>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "analysis/ground.hpp"
+#include "stiffness_matrix.hpp"
 #include "support.hpp"
 
 namespace evodevo::test {
@@ -17,20 +18,9 @@ namespace {
 
 /// The highest angular frequency of a body at its rest positions, from the eigenvalues of a dense matrix, 1/s.
 double highest_frequency(const Body& body) {
-  const auto n = static_cast<Eigen::Index>(3 * body.masses.size());
-  Eigen::MatrixXd k = Eigen::MatrixXd::Zero(n, n);
-  for (const Spring& s : body.springs) {
-    const Vec3 d = body.masses[s.b].rest - body.masses[s.a].rest;
-    const Eigen::Vector3d e = Eigen::Vector3d(d.x, d.y, d.z) / norm(d);
-    const Eigen::Matrix3d block = body.materials[s.material].stiffness * e * e.transpose();
-    const double ma = body.masses[s.a].mass, mb = body.masses[s.b].mass;
-    k.block<3, 3>(3 * s.a, 3 * s.a) += block / ma;
-    k.block<3, 3>(3 * s.b, 3 * s.b) += block / mb;
-    k.block<3, 3>(3 * s.a, 3 * s.b) -= block / std::sqrt(ma * mb);
-    k.block<3, 3>(3 * s.b, 3 * s.a) -= block / std::sqrt(ma * mb);
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(k, Eigen::EigenvaluesOnly);
-  return std::sqrt(solver.eigenvalues().maxCoeff());
+  std::vector<double> stiffness;
+  for (const Spring& spring : body.springs) stiffness.push_back(body.materials[spring.material].stiffness);
+  return std::sqrt(largest_eigenvalue(mass_weighted_matrix(body, stiffness)));
 }
 
 Steps at(double dt) { return {Method::paper_euler, Precision::float64, dt}; }

@@ -58,20 +58,17 @@ struct OtherLocale {
 };
 
 /// Crashes when it is destroyed, if it was told to.
-class AtEnd {
- public:
+struct AtEnd {
   ~AtEnd() {
-    if (crashes_) std::raise(SIGSEGV);
+    if (crashes) std::raise(SIGSEGV);
   }
-  void crash_if(bool crashes) const { crashes_ = crashes; }
 
- private:
-  mutable std::atomic<bool> crashes_ = false;  // operators are called by several threads
+  std::atomic<bool> crashes = false;  // several threads call an operator
 };
 
 struct Mutation final : evodevo::Mutation {
   std::string how = "well";
-  AtEnd at_end;
+  mutable AtEnd at_end;
 
   void parameters(Parameters& p) override {
     p.choice(how, "how",
@@ -80,7 +77,7 @@ struct Mutation final : evodevo::Mutation {
              "What it does.");
   }
   void mutate(evodevo::Genome&, const evodevo::Layout&, evodevo::Rng&) const override {
-    at_end.crash_if(how == "crash-at-end");
+    at_end.crashes = how == "crash-at-end";
     if (how == "hang") hang();
     if (how == "exit") std::exit(0);
     if (how == "exit-at-once") _exit(0);
@@ -101,7 +98,7 @@ struct Mutation final : evodevo::Mutation {
 
 struct Encoding final : evodevo::Encoding {
   std::string how = "well";
-  AtEnd at_end;
+  mutable AtEnd at_end;
 
   void parameters(Parameters& p) override {
     p.choice(how, "how",
@@ -118,7 +115,7 @@ struct Encoding final : evodevo::Encoding {
   evodevo::Blueprint decode(const evodevo::Genome&, const evodevo::Layout&,
                             const evodevo::EncodingContext& context) const override {
     if (how == "crash") std::raise(SIGSEGV);
-    at_end.crash_if(how == "crash-at-end");
+    at_end.crashes = how == "crash-at-end";
     evodevo::Blueprint blueprint;
     blueprint.body.materials = context.materials;
     blueprint.body.masses = {{{0, 0, 0}, 0.2}, {{0.7, 0, 0}, 0.2}, {{0, 0.7, 0}, 0.2}};
@@ -132,7 +129,7 @@ struct Encoding final : evodevo::Encoding {
 
 struct Devo final : evodevo::Devo {
   std::string how = "well";
-  AtEnd at_end;
+  mutable AtEnd at_end;
 
   void parameters(Parameters& p) override {
     p.choice(how, "how", {"well", "crash", "overflow", "crash-when-asked", "throw-when-asked", "crash-at-end"},
@@ -144,7 +141,7 @@ struct Devo final : evodevo::Devo {
     return {};
   }
   void develop(const evodevo::DevoContext& context, evodevo::Edits&, evodevo::Rng&) const override {
-    at_end.crash_if(how == "crash-at-end");
+    at_end.crashes = how == "crash-at-end";
     if (how == "crash" && context.cycle == 2) std::raise(SIGSEGV);
     if (how == "overflow" && context.cycle == 2) deeper(0);
   }
@@ -152,7 +149,7 @@ struct Devo final : evodevo::Devo {
 
 struct Fitness final : evodevo::Fitness {
   std::string how = "well";
-  AtEnd at_end;
+  mutable AtEnd at_end;
 
   void parameters(Parameters& p) override {
     p.choice(how, "how",
@@ -202,7 +199,7 @@ struct Fitness final : evodevo::Fitness {
     return {{how == "nameless-objective" ? "" : "one", "1", true}};
   }
   std::vector<double> score(const evodevo::Observation&) const override {
-    at_end.crash_if(how == "crash-at-end");
+    at_end.crashes = how == "crash-at-end";
     return std::vector<double>(how == "one-score-too-many" ? 2 : 1, 1.0);
   }
 };

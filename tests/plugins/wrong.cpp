@@ -130,18 +130,13 @@ struct Wrong final : evodevo::Encoding {
 struct Wrong final : evodevo::Fitness {
   evodevo::Request observes() const override { return {0, 0.1, false}; }
 #if defined(WRONG_NAMES_OBJECTIVE)
-  std::vector<evodevo::Objective> objectives() const override {
-    return {{ "<b>way</b>", "m", true }};
-  }
+  static constexpr const char *name = "<b>way</b>", *unit = "m";
 #elif defined(WRONG_NAMES_UNIT)
-  std::vector<evodevo::Objective> objectives() const override {
-    return {{ "way", "m\n", true }};
-  }
+  static constexpr const char *name = "way", *unit = "m\n";
 #else
-  std::vector<evodevo::Objective> objectives() const override {
-    return {{ "way", "m", true }};
-  }
+  static constexpr const char *name = "way", *unit = "m";
 #endif
+  std::vector<evodevo::Objective> objectives() const override { return {{name, unit, true}}; }
   std::vector<double> score(const evodevo::Observation& seen) const override {
     const double way = seen.centre_after.x - seen.centre_before.x;
 #if defined(WRONG_TRANSLATION)

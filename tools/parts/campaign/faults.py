@@ -19,7 +19,6 @@ OPERATORS = {"+": "-", "-": "+", "*": "/", "/": "*", "+=": "-=", "-=": "+=", "&&
 BOUNDS = {"<": "<=", "<=": "<", ">": ">=", ">=": ">"}
 NO_CALLS = {"return", "throw", "if", "for", "while", "switch", "catch", "sizeof", "decltype", "delete", "static_assert"}
 ONLY_SPEED = {"reserve", "shrink_to_fit"}  # calls that change no result
-DURATIONS = {"hours", "minutes", "seconds", "milliseconds", "microseconds"}  # of which a little more changes no result
 KINDS = ("operator", "bound", "constant", "call")
 
 
@@ -63,7 +62,9 @@ def _sign(tokens, i, text):
 
 def _constant(tokens, i):
     token = tokens[i]
-    if token.lastgroup != "number" or DURATIONS.intersection(beside.group() for beside in tokens[max(0, i - 3) : i]):
+    # how long something waits changes no result: std::chrono::seconds patience{30}
+    waits = "chrono" in (before.group() for before in tokens[max(0, i - 5) : i])
+    if token.lastgroup != "number" or waits:
         return []
     parts = re.fullmatch(r"(\d[\d']*|0[xX][\da-fA-F']+)([uUlLzZ]*)", token.group())
     if parts:
