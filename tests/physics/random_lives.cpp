@@ -8,6 +8,7 @@
 #include "analysis/ground.hpp"
 #include "analysis/neighbours.hpp"
 #include "analysis/stability.hpp"
+#include "cpu/simulator.hpp"
 #include "random_numbers.hpp"
 
 namespace evodevo::test {
@@ -115,6 +116,17 @@ std::vector<Answer> simulate(Simulator& simulator, const std::vector<Life>& live
     answers[i].task.state = nullptr;  // this pointer would dangle if the answer were moved
   }
   return answers;
+}
+
+double sensitivity(const Life& life, const Scene& scene, const Stepping& stepping, double moved) {
+  Random random(life.seed);
+  std::vector<Life> lives(65, life);
+  for (std::size_t i = 1; i < lives.size(); ++i)
+    for (Vec3& x : lives[i].start.position) x = x + random.vector(moved);
+  const std::vector<Answer> answers = simulate(*make_cpu_simulator(scene, stepping, 0), lives);
+  double largest = 0;
+  for (const Answer& answer : answers) largest = std::max(largest, largest_difference(answers[0].state, answer.state));
+  return largest;
 }
 
 }  // namespace evodevo::test

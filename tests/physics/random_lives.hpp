@@ -31,4 +31,9 @@ Scene mirrored(Scene scene);
 /// Simulates all lives in one batch.
 std::vector<Answer> simulate(Simulator& simulator, const std::vector<Life>& lives, Recording recording = {});
 
+/// The largest distance (m) between masses at the end of a life and those of 64 others, whose masses start up to
+/// `moved` m elsewhere along each axis; on the CPU. It is far more than `moved` where that decides in which step a mass
+/// reaches a rigid floor, or whether friction holds it.
+double sensitivity(const Life& life, const Scene& scene, const Stepping& stepping, double moved);
+
 }  // namespace evodevo::test

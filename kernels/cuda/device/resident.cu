@@ -247,6 +247,10 @@ __device__ __forceinline__ void take_samples(const Body& body, const Share& shar
   }
 }
 
+/// Waits for all warps of the block, which may come from different places in the code. __syncthreads() does not allow
+/// that, and costs about 1 % of the time less.
+__device__ __forceinline__ void synchronise_warps() { asm volatile("barrier.cta.sync 0;" ::: "memory"); }
+
 /// Computes `count` steps after the first `done`; the table holds their lengths. The sums exist only in this function,
 /// which calls only inlined functions, so they stay in registers. A warp without springs only moves masses. Takes the
 /// samples that are due before the last of these steps; after each, passes are numbered anew.
@@ -273,9 +277,9 @@ __device__ __forceinline__ void advance(const Body& body, const StepConstants<Nu
       springs.halo_set = halo.set();
       add_spring_forces<true>(body, share, group_ends, springs, sums);
     }
-    __syncthreads();
+    synchronise_warps();
     move_masses(body, constants, resolution, {pass, pass + 1 == passes}, movers);
-    __syncthreads();
+    synchronise_warps();
     if constexpr (clustered) halo.template send<kind>(body);
     unsigned rows_on = Method::row(pass + 1) - Method::row(pass);
     if constexpr (sampled)
