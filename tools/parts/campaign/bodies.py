@@ -14,7 +14,7 @@ import time
 
 from .outcomes import Outcome, name_on_device
 
-BODIES = {"cpu": 256, "cuda": 2048}  # in a batch; more on a GPU, because each batch needs kernels that must be compiled
+BODIES = {"cpu": 256, "cuda": 8192}  # in a batch; more on a GPU, because each batch needs kernels that must be compiled
 BATCHES = 24  # of one process: each method in both precisions, with tame bodies and with others
 SECONDS = 120  # without a word, after which a process hangs
 KEPT = 60  # s of outcomes that become one
