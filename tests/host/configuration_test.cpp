@@ -510,6 +510,13 @@ TEST(Configuration, SyntaxAndFiles) {
   EXPECT_THAT(from_file("/"), testing::at_place("/: cannot be read: ", "folder"));
 }
 
+TEST(Configuration, TheSeedOfRoughGroundHas32Bits) {
+  const auto seeded = [](const std::string& seed) { return with("[scene.floor]", "[scene.floor]\nseed = " + seed); };
+  EXPECT_EQ(testing::read(seeded("4294967295")).scene.floor->seed, 4294967295);
+  EXPECT_THAT(complaint(seeded("4294967296")),
+              testing::at_place("test.toml:23:8: scene.floor.seed = 4294967296: ", "4294967295"));
+}
+
 TEST(Configuration, Overrides) {
   const auto read = [](const std::string& key, const std::string& value) {
     return testing::read(small_experiment, {{key, value, "--set " + key + "=" + value}});

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "cluster/ranks.hpp"
+#include "cluster/wire.hpp"
 #include "evolution/breeding.hpp"
 #include "evolution/evolution.hpp"
 #include "operators/loader.hpp"
@@ -370,6 +371,13 @@ TEST(Serve, RefusesAnotherProtocol) {
   ASSERT_TRUE(received);
   EXPECT_THAT(message::unpacked<message::Failure>(received->bytes).reason,
               testing::naming("protocol " + message::protocol(), "protocol 2.99", "same version"));
+}
+
+TEST(Messages, EndWhereTheirContentEnds) {
+  const std::string bytes = message::packed(message::Failure{.reason = "no room"});
+  EXPECT_EQ(message::unpacked<message::Failure>(bytes).reason, "no room");
+  EXPECT_THROW(message::unpacked<message::Failure>(bytes + '\0'), WireError);
+  EXPECT_THROW(message::unpacked<message::Failure>(bytes.substr(0, bytes.size() - 1)), WireError);
 }
 
 /// Other builds of the program read messages as long as the protocol is the same.

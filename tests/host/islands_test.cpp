@@ -50,6 +50,15 @@ TEST(Neighbours, OfATorusOfTwoRowsAreThree) {
                           Numbers{3, 4, 5}));
 }
 
+/// 1 2 3
+/// 4 5 6
+/// 7 8 9
+TEST(Neighbours, OfATorusMayBeOnASquare) {
+  const IslandSettings square{.count = 9, .topology = Topology::torus};
+  EXPECT_THAT(destinations_of(5, square), ElementsAre(2, 4, 6, 8));
+  EXPECT_THAT(destinations_of(9, square), ElementsAre(3, 6, 7, 8));
+}
+
 TEST(Neighbours, OfAStarAreTheFirstAndAllOthers) {
   EXPECT_THAT(all_destinations({.count = 4, .topology = Topology::star}),
               ElementsAre(Numbers{2, 3, 4}, Numbers{1}, Numbers{1}, Numbers{1}));

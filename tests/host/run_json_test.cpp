@@ -144,6 +144,32 @@ TEST_F(RunJson, AReportShowsTheBestElites) {
   EXPECT_FALSE(run["robots"][1]["film"]["shots"].empty());
 }
 
+TEST_F(RunJson, AReportShowsTheLineOfTheBestFromItsFounder) {
+  Individual child = archive_.known_individual(archive_.best(1).at(0));
+  const std::uint32_t founder = child.id;
+  std::vector<std::uint32_t> line;
+  for (std::uint32_t generation = archive_.generations().back().generation + 1; line.size() < 4; ++generation) {
+    child.parents = {child.id};
+    child.id = 24 + static_cast<std::uint32_t>(line.size());
+    child.born = generation;
+    child.result.objectives[0] += 1;  // better than all before
+    archive_.commit({child}, {}, {}, {.generation = generation, .evaluations = child.id + 1});
+    line.push_back(child.id);
+  }
+  const auto shown = [&](std::size_t ancestors) {
+    std::vector<std::pair<std::uint32_t, std::string>> robots;
+    const Json run = reported_run(archive_, experiment_, *simulator_,
+                                  {.best = 1, .best_of_others = 0, .ancestors = ancestors, .elites = 0}, 1'000'000);
+    for (const Json& robot : run["robots"]) robots.emplace_back(robot["individual"], robot["role"]);
+    return robots;
+  };
+  using ::testing::Pair;
+  EXPECT_THAT(shown(4), ElementsAre(Pair(line[3], "best in distance"), Pair(founder, "founder"),
+                                    Pair(line[0], "ancestor"), Pair(line[1], "ancestor"), Pair(line[2], "ancestor")));
+  EXPECT_THAT(shown(2),
+              ElementsAre(Pair(line[3], "best in distance"), Pair(founder, "founder"), Pair(line[1], "ancestor")));
+}
+
 TEST_F(RunJson, AReportHasTheScoresOfTheLivingAndTheBestInEachObjective) {
   const Json run = reported_run(archive_, experiment_, *simulator_, {.best = 1, .ancestors = 0}, 1'000'000, 1);
   EXPECT_EQ(run["filmed_scenario"], "hurt");

@@ -245,6 +245,8 @@ TEST_P(AnyNetwork, SizesAreTwoMoreNeuronsThatChangeNothingElse) {
   for (const std::string pairing : {"pairing = 'after-mapping'", "pairing = 'before-mapping'"}) {
     const auto fixed = make<Encoding>(GetParam(), pairing);
     const auto sized = make<Encoding>(GetParam(), pairing + "\nsize_range = 0.9");
+    EXPECT_FALSE(fixed->sets_growth());
+    EXPECT_TRUE(sized->sets_growth());
     const Layout less = fixed->layout(context()), more = sized->layout(context());
     ASSERT_EQ(more.first_blocks.size(), less.first_blocks.size() + 2);
     EXPECT_EQ(more.first_size(), less.first_size() + 2 * less.first_blocks.back().count);

@@ -84,6 +84,12 @@ TEST_F(Regulatory, CellsDivideWhereTheirProductsPoint) {
   expect_place(places(back)[1], {-1, 1, 0});
 }
 
+TEST_F(Regulatory, CellsComeFromThePlaceOfTheFirst) {
+  const Blueprint blueprint = embryo({{divide, 1}, {to_z, 3}, {to_x, 1}}, "steps = 3");
+  ASSERT_THAT(blueprint.origins, SizeIs(blueprint.body.masses.size()));
+  for (const Vec3& origin : blueprint.origins) EXPECT_EQ(norm(origin), 0);
+}
+
 TEST_F(Regulatory, EveryCellDividesInAStepUntilThereAreEnough) {
   EXPECT_THAT(embryo({{divide, 1}, {to_z, 1}}, "steps = 3").body.masses, SizeIs(8));
   EXPECT_THAT(embryo({{divide, 1}, {to_z, 1}}, "steps = 3\ncells = 5").body.masses, SizeIs(5));
