@@ -12,6 +12,7 @@ function(evodevo_add_plugin name)
   add_library(${target} MODULE ${arg_SOURCES})
   target_link_libraries(${target} PRIVATE evodevo::sdk)
   target_compile_definitions(${target} PRIVATE
+    _GLIBCXX_ASSERTIONS  # an index out of range ends the program, instead of giving results that depend on what lies there
     EVODEVO_PLUGIN_VERSION="${arg_VERSION}" EVODEVO_PLUGIN_LICENSE="${arg_LICENSE}")
   # with GNU unique symbols, all libraries would use the class of whichever library was loaded first
   target_compile_options(${target} PRIVATE -ffp-contract=off $<$<CXX_COMPILER_ID:GNU>:-fno-gnu-unique>)

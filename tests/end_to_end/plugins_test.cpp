@@ -201,6 +201,13 @@ TEST_F(Plugins, AnOperatorThatCrashesIsNamedWithItsFile) {
                                               "`evodevo conform " + library_.string() + " --experiment "));
 }
 
+TEST_F(Plugins, AnOperatorThatReadsBeyondTheGenesIsNamedWithItsFile) {
+  install("reads_beyond");
+  const Finished stopped = run_with("nothing", {"--plugin-path", own()});
+  EXPECT_NE(stopped.exit_code, 0);
+  EXPECT_THAT(stopped.output, testing::naming(library_.string() + ", individual 6, seed 7: crashed: Aborted", "conform"));
+}
+
 TEST_F(Plugins, ARunOutlivesTheFolderOfItsOperators) {
   install("sound");
   ASSERT_EQ(run_with("nothing", {"--plugin-path", own()}).exit_code, 0);

@@ -52,6 +52,8 @@ struct Nothing final : evodevo::Mutation {
     throw std::runtime_error("\x1b[31mnothing\nto mutate\xff" + std::string(1'000'000, '!'));
 #elif defined(FAULT_CRASH_IN_USE)
     std::raise(SIGSEGV);
+#elif defined(FAULT_READS_BEYOND)
+    genome[0] = genome[genome.size()];
 #elif defined(FAULT_NAN)
     genome[0] = std::numeric_limits<float>::quiet_NaN();
 #elif defined(FAULT_UNDEFINED_SYMBOL)
