@@ -15,7 +15,9 @@ import unittest.mock
 
 import tomlkit
 
+from campaign import command
 from campaign.amounts import different
+from campaign.bodies import AT_ONCE
 from campaign.calls import Broken
 from campaign.experiments import BATCH, Experiments, kind, listed_operators
 from campaign.laws import Laws
@@ -262,6 +264,13 @@ class Shrinking(unittest.TestCase):
             outcomes = list(itertools.islice(part.sitting(1e9, ()), 3))
         self.assertEqual([(each.case, each.tried) for each in outcomes[1:]], [("runs", BATCH), ("refused by check", 0)])
         self.assertEqual([fault for each in outcomes for fault in each.found], [])
+
+    def test_a_gpu_serves_few_at_once(self):
+        counts = []
+        for cores, device in itertools.product((1, AT_ONCE, 8 * AT_ONCE), ("cpu", "cuda")):
+            with unittest.mock.patch("os.cpu_count", return_value=cores), unittest.mock.patch("campaign.command.Laws"):
+                counts.append(len(command.laws(PROGRAM, pathlib.Path(), device)))
+        self.assertEqual(counts, [1, 1, AT_ONCE // 2, AT_ONCE // 2, 4 * AT_ONCE, AT_ONCE])
 
     class NoPageOpens:
         """Laws of which the last is broken, and one is left out."""

@@ -18,7 +18,9 @@ BODIES = {"cpu": 256, "cuda": 8192}  # in a batch; more on a GPU, because each b
 BATCHES = 24  # of one process: each method in both precisions, with tame bodies and with others
 SECONDS = 120  # without a word, after which a process hangs
 KEPT = 60  # s of outcomes that become one
-AT_ONCE = 8  # processes on a GPU; of 16 on an H200, some failed
+# processes on a GPU: of 16 on an H200, some failed; and of 20 on four H200s, each waited for minutes, since the driver lets
+# processes make their contexts one after another
+AT_ONCE = 8
 SANITIZERS = ("memcheck", "racecheck", "initcheck", "synccheck")
 FORMS = 96  # batches after which each kind has been there
 SANITIZED = 6  # bodies in a batch under a sanitizer

@@ -10,7 +10,7 @@ import subprocess
 
 from common.command_line import Failure, ended
 
-from .bodies import Bodies, Sanitizers
+from .bodies import Bodies, Sanitizers, processes
 from .experiments import Experiments, listed_operators
 from .fuzz import Fuzz
 from .laws import Laws
@@ -61,15 +61,15 @@ def parts_on_gpu(program, folder):
     bodies = hostile_bodies(program)
     return [
         Bodies(bodies, "cuda"),
-        Experiments(listed_operators(program), laws(program, folder), folder, "cuda"),
+        Experiments(listed_operators(program), laws(program, folder, "cuda"), folder, "cuda"),
         Sanitizers(bodies, "cuda"),
     ]
 
 
-def laws(program, folder):
+def laws(program, folder, device="cpu"):
     """Returns the laws of experiments for as many at once as there are pairs of cores, since most commands of each run on
-    one core, and others on three."""
-    at_once = max(1, (os.cpu_count() or 1) // 2)
+    one core, and others on three; on a GPU for no more than it serves."""
+    at_once = max(1, min((os.cpu_count() or 1) // 2, processes(device)))
     return [Laws(program, folder.resolve() / "experiments" / str(number)) for number in range(at_once)]
 
 
