@@ -138,6 +138,19 @@ TEST_F(Cloud, GivesEachMassTheMaterialOfTheNearestSite) {
   EXPECT_EQ(seen.size(), 5u);
 }
 
+TEST_F(Cloud, OfTwoSitesAtOnePlaceTakesTheFirst) {
+  const auto encoding = cloud(random_points(20).obj(), "sites = 2");
+  Rng rng = stream(5);
+  Genome genome = encoding->random(encoding->layout(context()), rng);
+  std::copy_n(genome.data(), 3, genome.data() + 4);
+  for (const float material : {0.0f, 1.0f}) {
+    genome[3] = material;
+    genome[7] = 1 - material;
+    for (const Mass& mass : decoded(*encoding, genome).body.masses)
+      EXPECT_EQ(mass.material, static_cast<std::int32_t>(material));
+  }
+}
+
 TEST_F(Cloud, ChoosesAmongItsMaterials) {
   const std::string file = random_points(20).obj();
   std::set<std::int32_t> seen;

@@ -163,6 +163,9 @@ TEST(Species, WithoutMemoryAllAreOne) {
   EXPECT_THAT(shares(with_genes({{0.1f, 1}, {0.9f, -1}, {0.5f, -3}})),
               testing::ElementsAre(DoubleNear(2.0 / 3, 0.02), DoubleNear(1.0 / 3, 0.02), 0))
       << "counted from the lowest score, if it is below 0";
+  Table one_failed = with_genes({{0.1f, 3}, {0.9f, 1}, {0.5f, 2}});
+  one_failed.rows[2].scores.clear();
+  EXPECT_THAT(shares(one_failed), testing::ElementsAre(DoubleNear(3.0 / 4, 0.02), DoubleNear(1.0 / 4, 0.02), 0));
 }
 
 TEST(Species, BecomeOneWhenTheyAreSimilar) {
