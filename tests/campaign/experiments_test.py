@@ -97,6 +97,41 @@ class Programs(unittest.TestCase):
     def test_a_sound_program_holds_all(self):
         self.assertTrue(self.laws(PROGRAM).hold(self.file))
 
+    def test_a_table_of_defaults_may_be_left_out(self):
+        tables = tomllib.loads(EXPERIMENT)
+        del tables["simulation"]
+        self.file.write_text(tomlkit.dumps(tables))
+        self.assertTrue(self.laws(PROGRAM).hold(self.file))
+
+    def held_together(self, lines):
+        """Returns which of four experiments a program accepts, of which the second must be refused. `lines` as above."""
+        files = [self.folder / f"experiment-{i}.toml" for i in range(4)]
+        for file in files:
+            file.write_text(EXPERIMENT)
+        files[1].write_text(EXPERIMENT.replace('"voxel"', '"voxels"'))
+        return self.laws(self.program(lines)).hold_together(files)
+
+    def test_a_sound_program_holds_all_together(self):
+        self.assertEqual(self.held_together(""), [True, False, True, True])
+
+    def test_faults_in_what_is_made_together(self):
+        in_runs, last = "[ $1 != run-many ] || sed -i -E '{}' \"$2\"", "/experiment-3/"
+        smaller = '/random-places/ s/]$/, "--set", "encoding.size=[1,1,1]"]/'
+        for lines, law in (
+            ("[ $1 != run-many ] || ! grep -q /one $2 || exit 7", "^run, 2 runs in one process: exit code 7"),
+            (f"[ $1:${{2##*{last}}} != show:one ] || exit 7", "^show: exit code 7"),
+            (in_runs.format('s/"--threads", "3"/&, "--seed", "99"/'), "^with 3 threads instead of 1: .* differs: "),
+            (in_runs.format(smaller), "^random-places: born with .*8.*, not .*12"),
+            (in_runs.format('/"--resume"/ s|/parts"|/elsewhere"|'), "^there is no .*/parts/run.sqlite"),
+            (in_runs.format('/"--resume"/ s/]$/, "--seed", "99"]/'), "^with an interruption: .* differs: "),
+            (
+                f"case $* in simulate*{last}*=float*) set -- \"$@\" --set scene.gravity.acceleration=15 ;; esac",
+                "^precision: float on cpu differs",
+            ),
+        ):
+            with self.subTest(law), self.assertRaisesRegex(Broken, law):
+                self.held_together(lines)
+
     def test_what_is_refused_with_its_place_is_no_fault(self):
         self.file.write_text(EXPERIMENT.replace('"voxel"', '"voxels"'))
         self.assertFalse(self.laws(PROGRAM).hold(self.file))
@@ -240,6 +275,54 @@ class Shrinking(unittest.TestCase):
         with tempfile.TemporaryDirectory() as scratch:
             outcomes = list(Experiments(listed_operators(PROGRAM), [laws], pathlib.Path(scratch)).sitting(1e-9, ()))
         self.assertRegex(outcomes[0].found[0], "experiment-0.toml: rest: not reached; not ")
+
+    class BrokenTogether:
+        """Laws that only the experiments with some numbers break, and all when they are tried together."""
+
+        left_out = {"pages": "there is no browser"}
+
+        def __init__(self, numbers=()):
+            self._names = {f"experiment-{number}.toml" for number in numbers}
+
+        def hold_together(self, files):
+            raise Broken("scores: nan is not finite")
+
+        def hold(self, file):
+            if file.name in self._names:
+                raise Broken("rest: not reached")
+            return True
+
+    def on_gpu(self, folder, laws):
+        """Returns the first outcomes of a sitting on a GPU, of which no experiment is made smaller: what was accepted, and
+        what was refused."""
+        part = Experiments(listed_operators(PROGRAM), [laws], folder, "cuda")
+        with unittest.mock.patch("campaign.experiments.without", lambda tables: ()):
+            return [*itertools.islice(part.sitting(1e-9, ()), 1, 3)]
+
+    def test_what_is_broken_together_is_looked_for_alone(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            folder = pathlib.Path(scratch)
+            runs, refused = self.on_gpu(folder, self.BrokenTogether([7]))
+            self.assertEqual((runs.tried, refused.tried), (BATCH, 0))
+            self.assertRegex(" ".join(runs.found), "^[^ ]*experiment-7.toml: rest: not reached$")
+            self.assertEqual([each.name for each in (folder / "found").iterdir()], ["experiment-7.toml"])
+
+    def test_what_is_only_broken_together_is_kept(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            folder = pathlib.Path(scratch)
+            runs, _ = self.on_gpu(folder, self.BrokenTogether())
+            self.assertRegex(" ".join(runs.found), "experiment-0.toml .*experiment-19.toml: together: scores: nan")
+            self.assertEqual(len([*(folder / "found").iterdir()]), BATCH)
+
+    def test_on_a_gpu_a_batch_is_tried_together(self):
+        laws = unittest.mock.Mock(left_out={"pages": "there is no browser"})
+        laws.hold_together.side_effect = lambda files: [i % 4 > 0 for i, _ in enumerate(files)]
+        with tempfile.TemporaryDirectory() as scratch:
+            folder = pathlib.Path(scratch)
+            runs, refused = self.on_gpu(folder, laws)
+            self.assertEqual([*(folder / "found").iterdir()], [])
+        self.assertEqual((runs.tried, refused.tried, runs.found + refused.found), (BATCH * 3 // 4, BATCH // 4, ()))
+        laws.hold.assert_not_called()
 
     class WaitsForAnother:
         """A law that holds once two experiments are tried at the same time, each with laws of its own."""

@@ -10,6 +10,7 @@ import sqlite3
 
 from .calls import Broken, require
 
+CONTROLS = ("off", "random-places")
 CYCLE = 1
 ROBOTS = 8  # among which one is looked for
 
@@ -17,7 +18,14 @@ ROBOTS = 8  # among which one is looked for
 def keeps_amounts(program, file, folder):
     """Raises Broken if the control `random-places` changes a robot of an experiment by other amounts than its operators
     do."""
-    runs = [_first_robots(program, file, folder, control) for control in ("off", "random-places")]
+    for control in CONTROLS:
+        require(program("run", *first_robots(file, folder, control)), f"run, {control}")
+    are_changed_alike(program, folder)
+
+
+def are_changed_alike(program, folder):
+    """Like keeps_amounts(), after the runs of first_robots() have been made in `folder`."""
+    runs = [folder / control for control in CONTROLS]
     alive = set.intersection(*map(_alive, runs))
     if not alive:
         return
@@ -60,9 +68,8 @@ def different(expected, given, born):
     return ", ".join(f"{what} {given[what]} instead of {expected[what]}" for what in dict.fromkeys(wrong))
 
 
-def _first_robots(program, file, folder, control):
-    """Makes a run of the first robots, and returns its folder."""
-    run = folder / control
+def first_robots(file, folder, control):
+    """Returns the arguments of `run` that make only the first robots, in the folder `folder`/`control`."""
     settings = {
         "development.control": control,
         "experiment.evaluations": ROBOTS,
@@ -70,8 +77,7 @@ def _first_robots(program, file, folder, control):
         "experiment.verify_front": "false",
     }
     words = [word for key, value in settings.items() for word in ("--set", f"{key}={value}")]
-    require(program("run", file, "--out", run, "--threads", 1, "--no-report", *words), f"run, {control}")
-    return run
+    return [file, "--out", folder / control, "--threads", 1, "--no-report", *words]
 
 
 def _alive(run):

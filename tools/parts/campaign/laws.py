@@ -1,6 +1,7 @@
 """The laws that hold for every experiment that `evodevo check` accepts."""
 
 import contextlib
+import itertools
 import json
 import math
 import pathlib
@@ -10,7 +11,7 @@ import sqlite3
 import subprocess
 import tomllib
 
-from .amounts import keeps_amounts
+from .amounts import CONTROLS, are_changed_alike, first_robots, keeps_amounts
 from .calls import RANKS, Broken, Program, require
 from .rounding import moves_as_in_double
 from .run_page import Page
@@ -40,6 +41,7 @@ class Laws:
     def hold(self, file):
         """Returns whether the program accepts the experiment in a file; raises Broken if it does, and a law does not
         hold, or if the program refuses it in any way but with a message."""
+        self._empty()
         if not self._is_accepted(file):
             return False
         one, three, parts = (self._folder / name for name in ("one", "three", "parts"))
@@ -58,8 +60,38 @@ class Laws:
             moves_as_in_double(self._evodevo, file, one, best["individual"], self._folder)
         return True
 
+    def hold_together(self, files):
+        """Like hold() for each of some experiments, in few processes, for devices on which a process starts slowly. The
+        runs are made in one process, so only the first experiment that is accepted is run alone and with 3 ranks."""
+        accepted = [self._is_accepted(file) for file in files]
+        held = [*itertools.compress(files, accepted)]
+        if held:
+            self.hold(held[0])
+        if held[1:]:
+            self._hold_in_one_process(held[1:])
+        return accepted
+
+    def _hold_in_one_process(self, files):
+        self._empty()
+        folders = {file: self._folder / file.stem for file in files}
+        self._make([[file, *made(folder / "one", 1)] for file, folder in folders.items()], "run")
+        best = {file: self._makes_sense(folder / "one") for file, folder in folders.items()}
+        otherwise = [[file, *made(folder / "three", 3)] for file, folder in folders.items()]
+        for file, folder in folders.items():
+            otherwise += [first_robots(file, folder, control) for control in CONTROLS if develops(file)]
+        self._make(otherwise, "run --threads 3")
+        self._make_in_parts([[file, *made(folder / "parts", 1), "--resume"] for file, folder in folders.items()])
+        for file, folder in folders.items():
+            same_rows(folder / "one", folder / "three", "with 3 threads instead of 1")
+            same_rows(folder / "one", folder / "parts", "with an interruption")
+            if develops(file):
+                are_changed_alike(self._evodevo, folder)
+            if best[file]:
+                moves_as_in_double(self._evodevo, file, folder / "one", best[file]["individual"], folder)
+
     def page_holds(self, file):
         """Like hold(), for the law that the page of a run opens in a browser without a complaint."""
+        self._empty()
         if not self._is_accepted(file):
             return False
         run, page = self._folder / "one", self._folder / "page.html"
@@ -68,9 +100,11 @@ class Laws:
         self._page.opens(page)
         return True
 
-    def _is_accepted(self, file):
+    def _empty(self):
         shutil.rmtree(self._folder, ignore_errors=True)
         self._folder.mkdir(parents=True)
+
+    def _is_accepted(self, file):
         checked = self._evodevo("check", file)
         if checked.returncode == 2 and str(file) in checked.stderr:
             return False
@@ -79,11 +113,19 @@ class Laws:
 
     def _is_same_beside_another(self, file, one):
         """Makes the run in a process that makes another one at the same time."""
-        beside, lines = self._folder / "beside", self._folder / "runs.jsonl"
-        runs = [file, *made(beside, 2)], [file, *made(self._folder / "another", 1), "--seed", 2]
-        lines.write_text("".join(json.dumps([*map(str, words)]) + "\n" for words in runs))
-        require(self._evodevo("run-many", lines, "--jobs", 2), "run-many")
+        beside = self._folder / "beside"
+        self._make([[file, *made(beside, 2)], [file, *made(self._folder / "another", 1), "--seed", 2]], "run-many")
         same_rows(one, beside, "beside another run")
+
+    def _make(self, runs, what):
+        """Makes runs at the same time in one process. `runs` are the arguments of `run`."""
+        many = Program(self._evodevo.path, self._evodevo.seconds * len(runs))
+        require(many(*self._run_many(runs)), f"{what}, {len(runs)} runs in one process")
+
+    def _run_many(self, runs):
+        lines = self._folder / "runs.jsonl"
+        lines.write_text("".join(json.dumps([*map(str, words)]) + "\n" for words in runs))
+        return "run-many", lines, "--jobs", len(runs)
 
     def _is_same_with_ranks(self, file, one):
         ranks = self._folder / "ranks"
@@ -92,19 +134,29 @@ class Laws:
 
     def run_in_parts(self, file, folder):
         """Makes the run, asks it to stop after the first generation, and resumes it."""
-        command, seconds = [self._evodevo.path, "run", file, *made(folder, 1)], self._evodevo.seconds
+        if self._is_stopped(("run", file, *made(folder, 1)), "generation ", self._evodevo.seconds):
+            require(self._evodevo("resume", folder, "--no-report"), "resume")
+
+    def _make_in_parts(self, runs):
+        """Makes runs at the same time in one process, asks them to stop when one is done, and resumes them."""
+        if self._is_stopped(self._run_many(runs), "", self._evodevo.seconds * len(runs)):
+            self._make(runs, "resume")
+
+    def _is_stopped(self, words, line, seconds):
+        """Asks a command to stop when it prints a line that begins with `line`; returns whether it did before it was
+        done."""
+        command = [self._evodevo.path, *words]
         with subprocess.Popen([*map(str, command)], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as run:
-            next((line for line in run.stdout if line.startswith("generation ")), None)
+            next((each for each in run.stdout if each.startswith(line)), None)
             run.send_signal(signal.SIGINT)
             try:
                 run.communicate(timeout=seconds)
             except subprocess.TimeoutExpired:
                 run.kill()
-                raise Broken(f"run, interrupted: not done after {seconds} s") from None
+                raise Broken(f"{words[0]}, interrupted: not done after {seconds} s") from None
         if run.returncode not in (0, STOPPED):
-            raise Broken(f"run, interrupted: exit code {run.returncode}")
-        if run.returncode == STOPPED:
-            require(self._evodevo("resume", folder, "--no-report"), "resume")
+            raise Broken(f"{words[0]}, interrupted: exit code {run.returncode}")
+        return run.returncode == STOPPED
 
     def _makes_sense(self, folder):
         """Returns the best robot; None if there is none."""
@@ -141,7 +193,10 @@ def develops(file):
 
 def rows_of(folder):
     """Returns all that a run has found out, by table."""
-    with contextlib.closing(sqlite3.connect(pathlib.Path(folder) / "run.sqlite")) as run:
+    file = pathlib.Path(folder) / "run.sqlite"
+    if not file.is_file():
+        raise Broken(f"there is no {file}")
+    with contextlib.closing(sqlite3.connect(file)) as run:
         names = [name for (name,) in run.execute("SELECT name FROM sqlite_master WHERE type = 'table' ORDER BY name")]
         rows = {}
         for name in names:

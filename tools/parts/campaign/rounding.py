@@ -27,7 +27,7 @@ def moves_as_in_double(program, file, run, best, folder):
     double, than on the CPU in double precision."""
     body, experiment = folder / "body.json", folder / "no-contact.toml"
     tables = without_contact(tomllib.loads(file.read_text()))
-    device = tables["simulation"]["device"]
+    device = tables.get("simulation", {}).get("device", "cpu")
     experiment.write_text(tomlkit.dumps(tables))
     if program("check", experiment).returncode != 0:
         return
