@@ -5,7 +5,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <atomic>
+
 #include "commands/run/run.hpp"
+#include "evolution/record_check.hpp"
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
 #include "support/scratch.hpp"
@@ -107,6 +111,26 @@ TEST(Flagged, BodiesNeverWinThoughManyAreBorn) {
   for (const std::uint32_t id : archive.best(60)) EXPECT_EQ(archive.individual(id)->result.status, Status::ok);
 }
 
+/// Where more is measured than the objectives, a body that diverged has none of those scores.
+TEST(Flagged, BodiesOfAPopulationAreTakenFromTheRecord) {
+  const testing::Scratch scratch;
+  const std::string height = "[[fitness]]\nname = \"descriptor\"\nwhat = \"height\"\nrange = [0.0, 2.0]\n";
+  const Experiment experiment =
+      testing::read(testing::small_experiment + height,
+                    {{"materials.bone.stiffness", "1e6", ""}, {"simulation.unstable", "run", ""}});
+  Archive archive = Archive::create(scratch / "run", experiment, "test");
+  std::atomic<bool> stop = false;
+  evolve(experiment, *make_cpu_simulator(experiment.scene, experiment.stepping, 1), archive, stop,
+         {.generation_done = [&](const Summary&) { stop = true; }});
+  const std::vector<Individual> population = archive.population();
+  const auto diverged = std::count_if(population.begin(), population.end(), [](const Individual& individual) {
+    return individual.result.status == Status::diverged && individual.result.measures.empty();
+  });
+  EXPECT_GE(diverged, 1);
+  EXPECT_LT(diverged, static_cast<std::ptrdiff_t>(population.size()));
+  EXPECT_NO_THROW(check_resumable(archive, experiment));
+}
+
 TEST(SpringEvaluations, EndTheRunWithTheGenerationThatReachesThem) {
   const testing::Scratch scratch;
   Experiment experiment = testing::read(testing::small_experiment);
@@ -136,6 +160,27 @@ TEST(Hours, EndTheRunWithTheGenerationThatReachesThem) {
   EXPECT_TRUE(is_finished(experiment, generations));
   experiment.hours = 376.0 / 3600;
   EXPECT_FALSE(is_finished(experiment, generations));
+}
+
+TEST(TimeSpent, HasPartsThatFitIntoTheWhole) {
+  const testing::Scratch scratch;
+  const Experiment experiment = testing::read(testing::small_experiment);
+  Archive archive = Archive::create(scratch / "run", experiment, "test");
+  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
+  const std::atomic<bool> stop = false;
+  const TimeSpent time = evolve(experiment, *simulator, archive, stop, {});
+  for (const double part : {time.breed, time.verify, time.select, time.archive}) EXPECT_GE(part, 0);
+  EXPECT_LE(time.breed + time.verify + time.select, time.whole);
+  EXPECT_LE(time.archive, time.whole);
+
+  record_time_spent(archive, time);
+  record_time_spent(archive, {.whole = 100, .breed = 10, .verify = 20, .select = 30, .archive = 40});
+  const TimeSpent both = recorded_time_spent(archive).value();
+  EXPECT_DOUBLE_EQ(both.whole, time.whole + 100);
+  EXPECT_DOUBLE_EQ(both.breed, time.breed + 10);
+  EXPECT_DOUBLE_EQ(both.verify, time.verify + 20);
+  EXPECT_DOUBLE_EQ(both.select, time.select + 30);
+  EXPECT_DOUBLE_EQ(both.archive, time.archive + 40);
 }
 
 TEST(BestAndMedian, AreTheExtremeAndTheMiddle) {

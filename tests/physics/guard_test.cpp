@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "guard_cases.hpp"
+#include "physics/energy_bound.hpp"
 
 namespace evodevo::test {
 namespace {
@@ -22,6 +23,16 @@ INSTANTIATE_TEST_SUITE_P(Ways, GuardOfEachMethod,
 TEST_P(GuardOfEachMethod, LetsResonanceLive) { expect_resonance_to_live(factory(), method()); }
 
 TEST_P(GuardOfEachMethod, HasOneBoundForOneRunAndForSeveral) { expect_one_bound(factory()); }
+
+TEST(EnergyBound, GrowsWithTheSquareOfWhatTheMusclesAdd) {
+  // the root of 4 J + 5 J is 3; in 2 s, muscles raise it to 9, and so add 81 J - 9 J
+  EnergyBound bound{.start = 4, .drive = 3, .allowance = 1};
+  EXPECT_DOUBLE_EQ(bound.added(2, 5), 72);
+  EXPECT_DOUBLE_EQ(bound.limit(2, 5), 10 * (4 + 72 + 5 + 1));
+  bound.start = -1;  // counts as 0
+  EXPECT_DOUBLE_EQ(bound.added(2, 0), 36);
+  EXPECT_DOUBLE_EQ(bound.limit(2, 0), 10 * (36 + 1));
+}
 
 TEST_P(GuardOfEachMethod, EndsWhatTheFloorPumpsUp) {
   // the other methods are stable at this step
