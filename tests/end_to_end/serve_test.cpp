@@ -1,4 +1,5 @@
 // The page that `evodevo report --serve` serves, as a browser sees it.
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -105,6 +106,13 @@ TEST_F(Serve, WhatCannotBeServedIsRefused) {
   EXPECT_THAT(refusal({"--serve", port}), testing::naming("--serve " + port, "0"));
   EXPECT_THAT(refusal({"--serve", "65536"}), testing::naming("--serve 65536", "0 to 65535"));
   EXPECT_THAT(refusal({"--serve", "0", "--out", "page.html"}), testing::naming("--out page.html", "--serve"));
+}
+
+TEST_F(Serve, ARunThatCannotBeReadEndsTheCommandAtOnce) {
+  SQLite::Database(run_ + "/run.sqlite", SQLite::OPEN_READWRITE).exec("UPDATE scores SET value = 'many'");
+  Process server({program_, "report", run_, "--serve", "0"});
+  ASSERT_THAT(server.read_line().value_or(""), testing::naming(run_, "score"));  // not an address
+  EXPECT_EQ(server.wait(), 2) << server.output();
 }
 
 }  // namespace
