@@ -9,6 +9,7 @@
 
 #include "base/input_error.hpp"
 #include "base/philox.hpp"
+#include "support/messages.hpp"
 #include "support/scratch.hpp"
 
 namespace evodevo {
@@ -96,6 +97,18 @@ TEST(BodyJson, APlaceIsWhereTheMassIsNow) {
   given.state->position[7] = {1, 2, 3};
   const auto json = nlohmann::json::parse(body_to_json(given, {}));
   EXPECT_EQ(json.at("masses").at(7).at("position"), nlohmann::json({1.0, 2.0, 3.0}));
+}
+
+TEST(BodyJson, WhatIsNoNumberIsRefusedWhereOneIsExpected) {
+  const testing::Scratch scratch;
+  const auto json = nlohmann::json::parse(body_to_json(awkward_body(false), {"air", "bone"}));
+  for (const nlohmann::json& value :
+       std::vector<nlohmann::json>{true, "1", nullptr, nlohmann::json::array({1}), nlohmann::json::object()}) {
+    auto changed = json;
+    changed.at("masses").at(3).at("mass") = value;
+    EXPECT_THAT([&] { read_body(scratch.write("body.json", changed.dump())); },
+                ::testing::ThrowsMessage<ConfigError>(testing::naming("masses[3].mass", "number", value.dump())));
+  }
 }
 
 TEST(BodyJson, AMessageQuotesUpTo60Bytes) {
