@@ -18,6 +18,7 @@ class Nsga2 final : public evodevo::Selection {
                                                                evodevo::Rng& rng) const override {
     auto pool = breeding_rows(rows);
     rng.shuffle(pool);  // a random order among equals
+    std::ranges::stable_sort(pool, {}, [&](std::uint32_t row) { return rows[row].violation; });  // if all have failed
     return draw_pairs(by_layer_and_room(evodevo::points_of(rows), std::move(pool)), count, rng, evodevo::Tournament{2});
   }
 

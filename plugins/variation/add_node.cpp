@@ -6,7 +6,8 @@ namespace {
 
 /// Turns a link off and adds a node in its place. The link to the node has the weight 1 and the link from it the weight
 /// of the old one, so that a linear node changes nothing at first. The ids derive from the id of the old link: the same
-/// split in two genomes is the same innovation. A link that has been split before is not split again.
+/// split in two genomes is the same innovation. A link that has been split is not split again while any of the blocks
+/// that this gave is still there.
 class AddNode final : public evodevo::Mutation {
  public:
   evodevo::Traits traits() const override { return {.block_types = {"node", "link"}}; }
@@ -18,7 +19,7 @@ class AddNode final : public evodevo::Mutation {
     for (std::uint32_t i = 0; i < genome.blocks.size(); ++i) {
       const evodevo::Block& block = genome.blocks[i];
       if (block.type == types->link && genome[block.first + evodevo::neat::on] != 0 &&
-          !find_block(genome, layout, evodevo::derived_id(block.id, role_node), layout.types[types->link].section))
+          !is_split(genome, layout, *types, block.id))
         whole.push_back(i);
     }
     if (!whole.empty()) split(genome, layout, *types, whole[rng.below(static_cast<std::uint32_t>(whole.size()))], rng);
@@ -31,6 +32,16 @@ class AddNode final : public evodevo::Mutation {
   static bool has_room(const evodevo::Genome& genome, const evodevo::Layout& layout, const Types& types) {
     return count_blocks(genome, layout, types.node) < layout.types[types.node].most &&
            count_blocks(genome, layout, types.link) + 2 <= layout.types[types.link].most;
+  }
+
+  /// Whether a block is there that a split of this link has given. Its links can outlive the node: other mutations may
+  /// redirect them before it is removed.
+  static bool is_split(const evodevo::Genome& genome, const evodevo::Layout& layout, const Types& types,
+                       evodevo::BlockId link) {
+    const auto is_there = [&](Role role, std::uint32_t type) {
+      return find_block(genome, layout, evodevo::derived_id(link, role), layout.types[type].section).has_value();
+    };
+    return is_there(role_node, types.node) || is_there(role_in, types.link) || is_there(role_out, types.link);
   }
 
   static void split(evodevo::Genome& genome, const evodevo::Layout& layout, const Types& types, std::uint32_t link,

@@ -196,6 +196,20 @@ TEST(Nsga2, ChanceDecidesAmongEquals) {
   EXPECT_NEAR(ends[1], 4 / 9.0, 0.03);
 }
 
+TEST(Nsga2, TheLeastInfeasibleBreedAmongTheFailed) {
+  const auto selection = make<Selection>("nsga2");
+  const Table table{.rows = {{.violation = 3}, {.violation = 1}, {.violation = 2}}};
+  std::vector<double> share(3, 0);
+  const int seeds = 200, couples = 40;
+  for (std::uint64_t seed = 0; seed < seeds; ++seed)
+    for (const auto& [parent, mate] : table.couples(*selection, couples, seed))
+      share[parent] += 9.0 / (seeds * couples);
+  // the better of two draws is the i-th best of three in 5, 3 and 1 of 9 cases
+  EXPECT_NEAR(share[1], 5, 0.3);
+  EXPECT_NEAR(share[2], 3, 0.3);
+  EXPECT_NEAR(share[0], 1, 0.3);
+}
+
 TEST(Nsga2, TheLeastInfeasibleSurviveAmongTheFailed) {
   const auto selection = make<Selection>("nsga2");
   Table table{.rows = {{.violation = 3}, {.violation = 1}, {.violation = 2}, {.scores = {1, 1}}}};

@@ -176,6 +176,25 @@ TEST(AddNode, SplitsNoLinkTwice) {
   EXPECT_GT(genome.blocks.size(), once.size()) << "but other links";
 }
 
+TEST(AddNode, SplitsNoLinkOfWhichAPartIsThere) {
+  const auto mutation = make<Mutation>("add-node");
+  const std::uint32_t added = 5, in = 6, out = 7;  // the blocks of the first split
+  for (const auto& [kept, end] : {std::pair{in, neat::to}, {out, neat::from}})
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+      Rng rng = stream(seed);
+      Genome genome = first_network();
+      mutation->mutate(genome, network(), rng);
+      genome[genome.blocks[kept].first + end] = 2;  // another mutation saves the link from being removed with the node
+      remove_block(genome, network(), added);
+      ASSERT_EQ(count(genome, link), 3u);
+      for (const Block& block : genome.blocks)
+        if (block.type == link) genome[block.first + neat::on] = 1;
+      for (int i = 0; i < 4; ++i) mutation->mutate(genome, network(), rng);
+      ASSERT_GT(count(genome, node), 3u);
+      ASSERT_EQ(genome_fault(genome, network()), "") << seed;
+    }
+}
+
 TEST(AddLink, JoinsEveryPairOnce) {
   const auto mutation = make<Mutation>("add-link", "attempts = 200");
   Rng rng = stream(1);
