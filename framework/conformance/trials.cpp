@@ -201,7 +201,7 @@ Numbers numbers_of(const Edits& edits) {
     append(numbers, {m.mass, double(m.material)});
   }
   for (const NewSpring& s : edits.new_springs) {
-    append(numbers, {double(s.a), double(s.b), s.rest_length.value_or(-1), s.stiffness_factor});
+    append(numbers, {double(s.a), double(s.b), s.rest_length.value_or(-1), s.stiffness_factor, s.phase_growth});
     append(numbers, s.material);
   }
   for (const auto list : Causes::lists) append(numbers, edits.causes.*list);

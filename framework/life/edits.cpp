@@ -211,13 +211,13 @@ class Editor {
 
   void check_new_springs() const {
     for (const NewSpring& spring : edits_.new_springs) {
-      check_end(spring, spring.a);
-      check_end(spring, spring.b);
+      for (const std::uint32_t end : {spring.a, spring.b}) check_end(spring, end);
       if (spring.a == spring.b) refuse(pair_text(spring) + ", which are the same mass");
       const auto what = [&] { return pair_text(spring); };
       check_material(what, spring.material);
       check_stiffness(what, spring.material, spring.stiffness_factor);
       check_rest_length(what, spring.rest_length.value());
+      if (!std::isfinite(spring.phase_growth)) refuse(pair_text(spring) + " with a phase_growth that is not finite");
     }
   }
 
@@ -355,14 +355,14 @@ class Editor {
   }
 
   void add_spring(const NewSpring& spring) {
-    body_.springs.push_back({new_index_[spring.a], new_index_[spring.b], *spring.rest_length,
-                             index_of(spring.material), 1, *spring.rest_length, spring.stiffness_factor});
+    body_.springs.push_back({new_index_[spring.a], new_index_[spring.b], *spring.rest_length, index_of(spring.material),
+                             1, *spring.rest_length, spring.stiffness_factor, spring.phase_growth});
   }
 
   const Edits& edits_;
   Body& body_;
   LivingBody* living_;
-  std::size_t old_materials_;  ///< number of materials before the edits
+  std::size_t old_materials_;              ///< number of materials before the edits
   std::optional<MaterialList> materials_;  ///< of the body, once it is needed, because hashing many takes long
   std::vector<std::uint8_t> spring_gone_, mass_gone_;
   std::vector<std::uint32_t> new_index_;  ///< new index of every old and new mass

@@ -11,7 +11,7 @@ constexpr double full_turn = 2 * 3.14159265358979323846;
 /// linearly with time, the muscle simply has another frequency meanwhile: the phase passes through all values between
 /// the first and the last one without a jump, and each muscle is changed twice, however many cycles there are. A
 /// schedule with one application changes phases at once. Encodings with a parameter `phase_range` set
-/// Spring::phase_growth; springs that are added during development keep their phase.
+/// Spring::phase_growth; springs that take over the material of another one during development go on like it.
 class BallisticPhase final : public evodevo::Devo {
  public:
   evodevo::RecordRequest observes() const override { return {}; }

@@ -33,7 +33,8 @@ struct ActLimits {
         "springs, that let a spring go, and that reach for a new one.");
     p.integer(masses, "limit", {0, 10'000'000, "1"}, "Largest number of masses to which a body grows.");
     p.integer(springs_of_daughter, "springs", {1, 1000, "1"},
-              "Number of springs of a daughter mass: one to her mother, the others to the mother's nearest partners.");
+              "Number of springs of a daughter mass: one to her mother, the others to those of the mother's partners "
+              "that are nearest to the daughter.");
     p.integer(least_springs, "least_springs", {1, 100'000, "1"},
               "Number of springs that each mass keeps when springs are let go.");
     p.integer(most_springs, "most_springs", {1, 100'000, "1"}, "Number of springs at which a mass gets no more.");
@@ -96,10 +97,10 @@ class MassActs {
   void reach_for_others() {
     each_willing(reach, [&](std::uint32_t mass) {
       const auto other = can_get_one(mass) ? nearest_free(mass) : std::nullopt;
-      const auto material = other ? material_to(mass, *other) : std::nullopt;
-      if (!material) return false;
+      const auto tissue = other ? tissue_between(mass, *other) : std::nullopt;
+      if (!tissue) return false;
       reached_.insert(std::minmax(mass, *other));
-      join(mass, *other, *material, out_.at(mass, reach));
+      join(mass, *other, *tissue, out_.at(mass, reach));
       ++springs_[*other];
       return true;
     });
@@ -209,18 +210,28 @@ class MassActs {
     return found;
   }
 
-  /// Returns the material of a new spring: the mean of those of its masses or, if one has none, that of the first
-  /// spring of `mass`; nothing if that is air, or if there is no spring.
-  std::optional<Material> material_to(std::uint32_t mass, std::uint32_t other) const {
-    auto material = material_between(body_, body_.masses[mass].material, body_.masses[other].material);
-    if (const auto own = partners_.springs_of(mass); !material && !own.empty())
-      material = body_.materials[body_.springs[own.front()].material];
-    return material && !is_air(*material) ? material : std::nullopt;
+  /// What a new spring is made of.
+  struct Tissue {
+    Material material;
+    float phase_growth = 0;  ///< rad
+  };
+
+  /// Returns the tissue of a new spring: the mean of the materials of its masses or, if one has none, the tissue of the
+  /// first spring of `mass`; nothing if that is air, or if there is no spring.
+  std::optional<Tissue> tissue_between(std::uint32_t mass, std::uint32_t other) const {
+    std::optional<Tissue> tissue;
+    if (const auto mixed = material_between(body_, body_.masses[mass].material, body_.masses[other].material)) {
+      tissue = {*mixed};
+    } else if (const auto own = partners_.springs_of(mass); !own.empty()) {
+      const Spring& model = body_.springs[own.front()];
+      tissue = {body_.materials[model.material], model.phase_growth};
+    }
+    return tissue && !is_air(tissue->material) ? tissue : std::nullopt;
   }
 
   /// Adds a spring from a mass of the body to another mass.
-  void join(std::uint32_t mass, std::uint32_t other, const Material& material, double cause) {
-    edits_.new_springs.push_back({mass, other, material, {}});
+  void join(std::uint32_t mass, std::uint32_t other, const Tissue& tissue, double cause) {
+    edits_.new_springs.push_back({mass, other, tissue.material, {}, 1, tissue.phase_growth});
     edits_.causes.new_springs.push_back(cause);
     ++springs_[mass];
   }
@@ -259,9 +270,9 @@ class MassActs {
   }
 
   /// Adds a daughter with the mother's material and memory, joined to the mother and to her partners that are nearest
-  /// to the daughter. Returns whether there is a material for her springs.
+  /// to the daughter. Returns whether there is something to make her springs of.
   bool bear(std::uint32_t mother, const Vec3& position) {
-    const auto to_mother = material_to(mother, mother);
+    const auto to_mother = tissue_between(mother, mother);
     if (!to_mother) return false;
     const auto daughter = static_cast<std::uint32_t>(masses());
     const double cause = out_.at(mother, divide);
@@ -278,7 +289,7 @@ class MassActs {
     sort_nearest_first(others, count, position, context_);
     others.resize(std::min(others.size(), count));
     for (const std::uint32_t other : others)
-      join(other, daughter, material_to(mother, other).value_or(*to_mother), cause);
+      join(other, daughter, tissue_between(mother, other).value_or(*to_mother), cause);
     return true;
   }
 

@@ -100,12 +100,14 @@ class SpringTurnover final : public evodevo::Devo {
         continue;
       const std::uint32_t leaves = leaving[taken.size()];
       const auto mixed = material_between(body, body.masses[a].material, body.masses[b].material);
-      const Material material = mixed ? *mixed : body.materials[body.springs[leaves].material];
+      const evodevo::Spring& gone = body.springs[leaves];
+      const Material material = mixed ? *mixed : body.materials[gone.material];
       if (is_air(material)) continue;
       taken.insert(pair);
       edits.removed_springs.push_back(leaves);
       edits.causes.removed_springs.push_back(stress[leaves]);
-      edits.new_springs.push_back({a, b, material, {}, mixed ? 1 : body.springs[leaves].stiffness_factor});
+      edits.new_springs.push_back(
+          {a, b, material, {}, mixed ? 1 : gone.stiffness_factor, mixed ? 0 : gone.phase_growth});
       if (beside) edits.causes.new_springs.push_back(stress[*beside]);
     }
   }

@@ -77,6 +77,30 @@ TEST(BallisticPhase, OneApplicationChangesPhasesAtOnce) {
   expect_phase(life, 1, 9.7, -40);
 }
 
+TEST(BallisticPhase, ComesToItsEndOnSpringsThatAreAddedMeanwhile) {
+  for (const auto& [name, parameters] :
+       {std::pair{"spring-turnover", "springs = 1"}, {"mass-turnover", "threshold = 2\nlimit = 1\nsprings = 3"}}) {
+    Life life = life_of_masses(6, false);
+    life.first_time = 2;
+    life.last_time = 7;
+    for (std::uint32_t s = 0; s < 5; ++s) {
+      life.add_spring(s, s + 1, muscle, 1);
+      life.living.body.springs[s].phase_growth = 2.5f;
+    }
+    const auto frequency_of = [&](const Spring& spring) {
+      return life.living.body.materials[spring.material].frequency;
+    };
+    const double first = frequency_of(life.living.body.springs[0]);
+    apply_at(2, 1, life);
+    const Edits edits = develop(*make<Devo>(name, parameters), life, 1);
+    ASSERT_FALSE(edits.new_springs.empty()) << name;
+    life.living = after(life, edits);
+    for (const Spring& spring : life.living.body.springs) EXPECT_GT(frequency_of(spring), first + 0.01) << name;
+    apply_at(7, 6, life);
+    for (const Spring& spring : life.living.body.springs) EXPECT_NEAR(frequency_of(spring), first, 1e-12) << name;
+  }
+}
+
 TEST(BallisticPhase, BodiesWithoutPhasesStayAsTheyAre) {
   const auto devo = make<Devo>("ballistic-phase");
   Life life = two_chains();

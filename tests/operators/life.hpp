@@ -127,7 +127,8 @@ inline std::vector<double> digest(const Edits& edits) {
   for (const NewMass& m : edits.new_masses)
     digest.insert(digest.end(), {m.position.x, m.position.y, m.position.z, m.mass, static_cast<double>(m.material)});
   for (const NewSpring& s : edits.new_springs)
-    digest.insert(digest.end(), {double(s.a), double(s.b), s.material.stiffness, s.material.phase, s.stiffness_factor});
+    digest.insert(digest.end(), {double(s.a), double(s.b), s.material.stiffness, s.material.phase, s.stiffness_factor,
+                                 s.phase_growth});
   for (const ChangedSpring& c : edits.changed_springs)
     digest.insert(digest.end(), {double(c.spring), c.rest_length.value_or(-1), c.stiffness_factor.value_or(-1),
                                  c.material.value_or(Material{}).stiffness, c.material.value_or(Material{}).amplitude});

@@ -84,8 +84,7 @@ TEST(MassActs, DaughtersGetOneSpringToEachPartnerWhateverItsNumberOfSprings) {
   const Edits edits = develop(*devo, life, 1);
   ASSERT_EQ(edits.new_masses.size(), 1u);
   EXPECT_EQ(edits.new_springs.size(), 3u) << "to the mother and her two partners";
-  EXPECT_EQ(joined(after(life, edits).body),
-            (std::set<Pair>{{0, 1}, {1, 2}, {3, 4}, {4, 5}, {0, 6}, {1, 6}, {2, 6}}));
+  EXPECT_EQ(joined(after(life, edits).body), (std::set<Pair>{{0, 1}, {1, 2}, {3, 4}, {4, 5}, {0, 6}, {1, 6}, {2, 6}}));
 }
 
 TEST(MassActs, CrowdedDaughtersAreNotBorn) {
@@ -148,12 +147,14 @@ TEST(MassActs, ReachesForTheNearestMassWithRoom) {
   Life life = life_of_masses(5, false);
   for (std::uint32_t i = 0; i < 5; ++i) life.living.state.position[i] = {double(i), 0, 1};
   for (const auto& [a, b] : {Pair{0, 1}, {2, 3}, {2, 4}}) life.add_spring(a, b, bone, 1);
+  life.living.body.springs[0].phase_growth = 1.5f;
   life.own = genes(*devo, {{"reach", "contact", 1}});
   life.contact = {1, 0, 0, 0, 0};
   const Edits edits = develop(*devo, life, 1);  // 1 is joined already, and 2 is full
   ASSERT_EQ(edits.new_springs.size(), 1u);
   EXPECT_EQ(ordered(edits.new_springs[0].a, edits.new_springs[0].b), Pair(0, 3));
   EXPECT_EQ(edits.new_springs[0].material.stiffness, 10000);
+  EXPECT_EQ(edits.new_springs[0].phase_growth, 1.5f) << "like the spring whose material it takes over";
 }
 
 TEST(MassActs, OnesThatAreHeldBackGiveTheirTurnsToOthers) {

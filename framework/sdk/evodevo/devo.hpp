@@ -163,6 +163,9 @@ struct NewSpring {
   Material material;
   std::optional<double> rest_length;  ///< m; if not given, the length at which the new spring exerts no force
   double stiffness_factor = 1;        ///< stiffness relative to that of the material, 1
+  /// Spring::phase_growth, rad. A spring that takes over the material of another one takes over this as well: if
+  /// ballistic development is changing the phase of that material, it will come to its end on both springs.
+  float phase_growth = 0;
 };
 
 /// New properties of an existing spring, which continues to join the same two masses.

@@ -118,11 +118,11 @@ class Arrivals {
     }
   }
 
-  /// Returns a new spring with the stiffness, amplitude, frequency and phase of a random one.
+  /// Returns a new spring with the stiffness, amplitude, frequency and phase of a random one, now and later.
   NewSpring like_a_random_spring(std::uint32_t a, std::uint32_t b, Rng& rng) const {
     const auto& springs = context_.body.springs;
     const Spring& model = springs[rng.below(static_cast<std::uint32_t>(springs.size()))];
-    return {a, b, context_.body.materials[model.material], {}, model.stiffness_factor};
+    return {a, b, context_.body.materials[model.material], {}, model.stiffness_factor, model.phase_growth};
   }
 
   bool is_of_air(std::uint32_t mass) const {
