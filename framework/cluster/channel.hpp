@@ -22,6 +22,8 @@ class Channel {
 
   virtual int rank() const = 0;
   virtual int size() const = 0;
+  /// The number of a rank of this channel among all ranks of the run, by which messages name it.
+  virtual int number_in_run(int rank) const { return rank; }
   /// The number of this rank among the ranks on its host, from 0, and their number.
   virtual int rank_on_host() const = 0;
   virtual int ranks_on_host() const = 0;

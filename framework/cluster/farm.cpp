@@ -26,9 +26,6 @@ constexpr const char* or_mixed = ", or allow this with --mixed, so that the run 
 
 const Progress silent = [](double) {};
 
-/// The text by which messages name a rank.
-std::string title(int rank, const std::string& host) { return "rank " + std::to_string(rank) + " on " + host; }
-
 void tell_all(Channel& channel, const std::string& bytes) {
   for (int rank = 1; rank < channel.size(); ++rank) channel.send(rank, bytes);
 }
@@ -82,10 +79,15 @@ void Farm::wait_for_hellos() {
   }
 }
 
+std::string Farm::title(int rank, const std::string& host) const {
+  return "rank " + std::to_string(channel_.number_in_run(rank)) + " on " + host;
+}
+
 std::string Farm::who_is_missing() const {
   std::string missing;
   for (std::size_t i = 0; i < ranks_.size(); ++i)
-    if (!ranks_[i].ready) missing += (missing.empty() ? "" : ", ") + std::to_string(i);
+    if (!ranks_[i].ready)
+      missing += (missing.empty() ? "" : ", ") + std::to_string(channel_.number_in_run(static_cast<int>(i)));
   return "of " + std::to_string(ranks_.size()) + " ranks, these have not become ready in " +
          std::to_string((setup_patience * options_.patience).count()) + " s: " + missing +
          "; look whether their hosts and disks work, or start fewer ranks";
@@ -98,8 +100,8 @@ void Farm::check_questions(int rank, const message::Hello& hello) const {
                            : hello.scores != here.scores ? "score something else"
                                                          : nullptr;
   if (what)
-    throw InputError("the operators of " + title(rank, hello.host) + " " + what + " than those of rank 0 on " +
-                     here.host + "; give all ranks operators of the same version");
+    throw InputError("the operators of " + title(rank, hello.host) + " " + what + " than those of " +
+                     title(0, here.host) + "; give all ranks operators of the same version");
 }
 
 /// Returns the index of a provenance, which is new if no rank has had it.
@@ -117,15 +119,15 @@ void Farm::check_equal(int rank, const message::Hello& hello) const {
   const Provenance& there = hello.provenance;
   const std::string who = title(rank, hello.host);
   if (there.program != here.program)
-    throw InputError(who + " runs another build of evodevo (" + there.program + ") than rank 0 on " +
-                     worker_.hello().host + " (" + here.program + ")" + same_for_all + "program" + or_mixed);
+    throw InputError(who + " runs another build of evodevo (" + there.program + ") than " +
+                     title(0, worker_.hello().host) + " (" + here.program + ")" + same_for_all + "program" + or_mixed);
   for (std::size_t i = 0; i < here.operators.size(); ++i)
     if (there.operators.at(i).hash != here.operators[i].hash)
       throw InputError(who + " has another build of the " + name_of(here.operators[i]) + " (" +
-                       there.operators[i].hash + ") than rank 0 on " + worker_.hello().host + " (" +
+                       there.operators[i].hash + ") than " + title(0, worker_.hello().host) + " (" +
                        here.operators[i].hash + ")" + same_for_all + "libraries" + or_mixed);
   if (there.device != here.device)
-    throw InputError(who + " simulates on " + there.device + ", and rank 0 on " + worker_.hello().host +
+    throw InputError(who + " simulates on " + there.device + ", and " + title(0, worker_.hello().host) +
                      " simulates on " + here.device + same_for_all + "type of device (--device)" + or_mixed);
 }
 
@@ -291,7 +293,7 @@ bool Farm::take_messages(Batch& batch) {
 void Farm::take(int rank, message::Answer answer, Batch& batch) {
   const auto job = jobs_.extract(answer.job);
   if (job.empty() || answer.outcomes.size() != job.mapped().items.size())
-    throw WireError("rank " + std::to_string(rank) + " answers a question that was not asked");
+    throw WireError("rank " + std::to_string(channel_.number_in_run(rank)) + " answers a question that was not asked");
   const std::vector<std::size_t>& items = job.mapped().items;
   Rank& from = ranks_[static_cast<std::size_t>(rank)];
   for (std::size_t i = 0; i < items.size(); ++i) {

@@ -97,6 +97,8 @@ class Farm final : public Evaluator {
   };
 
   void wait_for_hellos();
+  /// The text by which messages name a rank.
+  std::string title(int rank, const std::string& host) const;
   std::string who_is_missing() const;
   void check_questions(int rank, const message::Hello& hello) const;
   void check_equal(int rank, const message::Hello& hello) const;

@@ -42,6 +42,7 @@ class GroupChannel : public Channel {
 
   int rank() const override { return number_of(all_.rank()); }
   int size() const override { return static_cast<int>(ranks_.size()); }
+  int number_in_run(int rank) const override { return ranks_.at(static_cast<std::size_t>(rank)); }
   int rank_on_host() const override { return all_.rank_on_host(); }
   int ranks_on_host() const override { return all_.ranks_on_host(); }
   void send(int to, std::string bytes) override {

@@ -47,14 +47,14 @@ void Post::Shared::put_in_box(Received received) {
 void Post::GroupsExchange::send(const Route& route, std::uint32_t generation, std::vector<Migrant> migrants) {
   const int group = post_.groups_.of_island(route.to);
   if (group == post_.groups_.of_rank(post_.shared_.rank()))
-    here.send(route, generation, std::move(migrants));
+    LocalExchange::send(route, generation, std::move(migrants));
   else
     post_.shared_.send(post_.groups_.first_rank(group),
                        message::packed(message::Migrants{route.from, route.to, generation, std::move(migrants)}));
 }
 
 void Post::GroupsExchange::end(std::int64_t island) {
-  here.end(island);
+  LocalExchange::end(island);
   post_.tell_first_ranks(message::packed(message::LastMigrants{island}));
 }
 
@@ -101,10 +101,10 @@ void Post::take(int from, const std::string& bytes) {
   switch (message::kind_of(bytes)) {
     case message::Kind::migrants: {
       auto m = message::unpacked<message::Migrants>(bytes);
-      return exchange_.here.send({m.from, m.to}, m.generation, std::move(m.migrants));
+      return exchange_.LocalExchange::send({m.from, m.to}, m.generation, std::move(m.migrants));
     }
     case message::Kind::last_migrants:
-      return exchange_.here.end(message::unpacked<message::LastMigrants>(bytes).island);
+      return exchange_.LocalExchange::end(message::unpacked<message::LastMigrants>(bytes).island);
     case message::Kind::generation: {
       const auto one = message::unpacked<message::Generation>(bytes);
       return on_generation_(one.island, one.summary);

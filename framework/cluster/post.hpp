@@ -82,16 +82,11 @@ class Post {
     std::deque<Received> box_;
   };
 
-  class GroupsExchange final : public Exchange {
+  class GroupsExchange final : public LocalExchange {
    public:
     explicit GroupsExchange(Post& post) : post_(post) {}
     void send(const Route& route, std::uint32_t generation, std::vector<Migrant> migrants) override;
     void end(std::int64_t island) override;
-    std::optional<std::vector<Migrant>> receive(const Route& route, std::uint32_t generation,
-                                                const std::atomic<bool>& stop) override {
-      return here.receive(route, generation, stop);
-    }
-    LocalExchange here;
 
    private:
     Post& post_;

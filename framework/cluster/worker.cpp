@@ -190,10 +190,10 @@ void report_failure(const std::exception& error, Channel& channel, std::chrono::
 
 void do_jobs(Channel& channel, Worker& worker, std::chrono::seconds patience) {
   Silence silence(patience);
-  for (Clock::time_point next_beat = Clock::now(); take_messages(channel, worker, silence);
-       worker.wait(between_looks)) {
+  for (Clock::time_point next_beat = Clock::now();; worker.wait(between_looks)) {
     silence.check();
     try {
+      if (!take_messages(channel, worker, silence)) return;
       send_answers(channel, worker);
     } catch (const std::exception& error) {
       return report_failure(error, channel, patience);

@@ -91,11 +91,15 @@ Json to_json(const SceneStudy& study) {
   return {{"individual", study.individual}, {"scenes", std::move(scenes)}, {"pairs", std::move(pairs)}};
 }
 
-/// Throws ConfigError if the encoding or the materials differ from those of the first experiment, because a genome must
-/// encode the same body in all scenes.
+/// Throws ConfigError if the encoding, the materials or the genes of operators differ from those of the first
+/// experiment, because a genome must encode the same body in all scenes.
 void expect_same_meaning(const Experiment& experiment, const std::string& title, const Experiment& first) {
   if (const auto other = difference(experiment, first, {"encoding", "materials"}); !other.empty())
     throw ConfigError(title + ": " + other + "; the same genome would encode another body: make the values equal");
+  if (experiment.layout != first.layout)
+    throw ConfigError(title +
+                      ": its operators have other genes of their own than those of the first experiment, so it "
+                      "cannot read the same genome; give both the same operators");
 }
 
 void warn_of_other_differences(const Experiment& experiment, const std::string& title, const Experiment& first) {
@@ -116,6 +120,7 @@ Experiment in_scene_of(const Scenario& scenario, const Experiment& experiment, c
       read_experiment(experiment.resolved, {.file = file,
                                             .overrides = {},
                                             .plugin_path = given_plugin_path(given),
+                                            .gpus = experiment.gpus,
                                             .files = experiment.files});  // what it was read from may be a pipe
   other.scene = scenario.scene;
   other.payload = scenario.payload;

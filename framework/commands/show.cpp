@@ -101,8 +101,9 @@ class Report {
  private:
   void print_island() const {
     const std::int64_t number = archive_.island();
-    if (number == 0) return;
-    const IslandSettings islands = recorded_settings(archive_).islands.value();
+    const Settings settings = recorded_settings(archive_);
+    if (number == 0 || !settings.islands) return;
+    const IslandSettings& islands = *settings.islands;
     const std::vector<Immigrant> immigrants = archive_.immigrants();
     const auto living = std::ranges::count_if(immigrants, [](const Immigrant& one) { return !one.died; });
     std::cout << "island " << number << " of " << islands.count << ", topology " << name_of(islands.topology) << ", "

@@ -73,8 +73,11 @@ class Refusable final : public Parameters {
     tables.emplace_back(name, std::move(table));
   }
   void beyond(std::string_view name, Range range) {
-    if (std::isfinite(range.high)) add(name, static_cast<std::int64_t>(std::min(2 * std::abs(range.high) + 1, 9e15)));
-    if (std::isfinite(range.low)) add(name, static_cast<std::int64_t>(std::max(-2 * std::abs(range.low) - 1, -9e15)));
+    constexpr double most = 9e15;  // of the whole numbers that a double holds exactly
+    const double above = std::min(2 * std::abs(range.high) + 1, most);
+    const double below = std::max(-2 * std::abs(range.low) - 1, -most);
+    if (above > range.high) add(name, static_cast<std::int64_t>(above));
+    if (below < range.low) add(name, static_cast<std::int64_t>(below));
   }
 };
 

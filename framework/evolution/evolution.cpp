@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -193,7 +194,7 @@ BestAndMedian best_and_median(std::vector<double> scores, bool maximise) {
   std::sort(scores.begin(), scores.end());
   const std::size_t half = scores.size() / 2;
   return {maximise ? scores.back() : scores.front(),
-          scores.size() % 2 == 1 ? scores[half] : (scores[half - 1] + scores[half]) / 2};
+          scores.size() % 2 == 1 ? scores[half] : std::midpoint(scores[half - 1], scores[half])};
 }
 
 bool is_finished(const Settings& settings, const std::vector<Summary>& generations) {

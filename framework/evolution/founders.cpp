@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/genome_sections.hpp"
 #include "base/text.hpp"
 #include "evolution/archive/archive.hpp"
 #include "evolution/archive/error.hpp"
@@ -50,9 +51,13 @@ std::vector<Migrant> founders(const Experiment& experiment) {
   if (population.empty()) refuse(experiment, "no generation of that run is complete; continue it with `resume`");
   const auto most = static_cast<std::size_t>(std::min(experiment.newborns(), experiment.evaluations));
   std::vector<Migrant> migrants;
-  for (const std::size_t place : chosen(population, most, archive.objectives().front().maximise))
-    migrants.push_back(
-        {.from = {.island = 0, .individual = population[place].id}, .genome = std::move(population[place].genome)});
+  for (const std::size_t place : chosen(population, most, archive.objectives().front().maximise)) {
+    Individual& one = population[place];
+    if (const std::string fault = genome_fault(one.genome, experiment.layout); !fault.empty())
+      refuse(experiment, "individual " + std::to_string(one.id) + " has " + fault +
+                             "; put back an undamaged copy of that run, or name another one");
+    migrants.push_back({.from = {.island = 0, .individual = one.id}, .genome = std::move(one.genome)});
+  }
   return migrants;
 }
 

@@ -180,6 +180,10 @@ TEST(Conformance, RecordsOfMassesAndMemoryAreTried) {
     EXPECT_THAT(outcome, ::testing::AnyOf("passed ", testing::at_place("skipped ", "no parameters"))) << one;
 }
 
+TEST(Conformance, RangesThatAreWiderThanTheNumbersTriedAreRight) {
+  EXPECT_EQ(special("best").at("refusals"), "passed ");
+}
+
 TEST(Conformance, BlocksThatNobodyHasAreMissed) {
   EXPECT_THAT(special("bend-leaf").at("changes"), testing::at_place("skipped ", "\"leaf\"", "--experiment"));
 }

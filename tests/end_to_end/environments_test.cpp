@@ -162,6 +162,13 @@ TEST_F(Environments, OneGenomeNeedsOneMeaning) {
   EXPECT_THAT(finished.output, testing::naming("sized.toml: encoding.edge ", "0.6", "0.5"));
   const std::string soft = other("soft.toml", "[development]", "[materials.bone]\nstiffness = 100\n\n[development]");
   EXPECT_THAT(environments({flat_, soft}).output, testing::naming("soft.toml: materials.bone.stiffness ", "100"));
+  const std::string ruled =
+      scratch_.write("ruled.toml", small_experiment + "\n[[development.operator]]\nname = 'regulated-growth'\n");
+  for (const auto& [one, two] : {std::pair{flat_, ruled}, {ruled, flat_}}) {
+    const testing::Finished refused = environments({one, two});
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.output, testing::naming(two, "genes", "same operators"));
+  }
 }
 
 TEST_F(Environments, WarnsOfWhatElseDiffers) {

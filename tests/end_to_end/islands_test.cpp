@@ -69,6 +69,14 @@ TEST_F(IslandCommands, ContinueOnlyTheWholeRun) {
   EXPECT_EQ(begin({"--resume"}).exit_code, 2) << "the other islands have generations";
 }
 
+TEST_F(IslandCommands, WriteNoLogIntoAnIsland) {
+  ASSERT_EQ(begin({"--until", "1s", "--set", "experiment.evaluations=100000"}).exit_code, 130);
+  const Finished finished = evodevo({"resume", run_, "--log", second_ + "/run.sqlite"});
+  EXPECT_EQ(finished.exit_code, 2);
+  EXPECT_THAT(finished.output, naming("--log", second_ + "/run.sqlite"));
+  EXPECT_EQ(evodevo({"show", second_}).exit_code, 0);
+}
+
 TEST_F(IslandCommands, BeginAgainWhatEndedWhileItWasCreated) {
   ASSERT_EQ(begin().exit_code, 0);
   const fs::path straight = scratch_ / "straight";

@@ -105,6 +105,16 @@ TEST_F(Plugins, TheRecordKeepsFileVersionAndHash) {
   EXPECT_EQ(evodevo({"resume", folder_}).exit_code, 0) << "the record knows the folder";
 }
 
+TEST_F(Plugins, TheSameCommandGoesOnWithThem) {
+  install("sound");
+  const std::vector<std::string> command{"--plugin-path", own(), "--set",    "experiment.evaluations=1000000",
+                                         "--until",       "1s",  "--resume", "--no-report"};
+  for (int i = 0; i < 2; ++i) {
+    const Finished finished = run_with("nothing", command);
+    EXPECT_EQ(finished.exit_code, 130) << finished.output;
+  }
+}
+
 TEST_F(Plugins, ResumeRefusesAnotherVersionUnlessTold) {
   install("sound");
   const std::vector<std::string> endless{"--plugin-path", own(), "--set", "experiment.evaluations=1000000",
@@ -205,7 +215,8 @@ TEST_F(Plugins, AnOperatorThatReadsBeyondTheGenesIsNamedWithItsFile) {
   install("reads_beyond");
   const Finished stopped = run_with("nothing", {"--plugin-path", own()});
   EXPECT_NE(stopped.exit_code, 0);
-  EXPECT_THAT(stopped.output, testing::naming(library_.string() + ", individual 6, seed 7: crashed: Aborted", "conform"));
+  EXPECT_THAT(stopped.output,
+              testing::naming(library_.string() + ", individual 6, seed 7: crashed: Aborted", "conform"));
 }
 
 TEST_F(Plugins, ARunOutlivesTheFolderOfItsOperators) {

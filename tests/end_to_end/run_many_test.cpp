@@ -10,6 +10,7 @@
 
 #include "evolution/archive/archive.hpp"
 #include "support/experiments.hpp"
+#include "support/islands.hpp"
 #include "support/messages.hpp"
 #include "support/process.hpp"
 #include "support/runs.hpp"
@@ -92,6 +93,18 @@ TEST_F(RunMany, ARunThatFailsDoesNotEndOthers) {
   EXPECT_EQ(Archive::read(scratch_ / "right").generations().back().evaluations, 24);
 }
 
+TEST_F(RunMany, AnIslandThatFailsDoesNotEndOtherRuns) {
+  std::string islands = testing::small_islands;
+  const std::string sound = "name = \"reset-weight\"\nprobability = 0.35";
+  islands.replace(islands.find(sound), sound.size(), "name = \"nothing\"\nprobability = 1.0");
+  Words failing = arguments("failing", {"--plugin-path", (fs::path(EVODEVO_FAULTY_PLUGINS) / "throws").string()});
+  failing.front() = scratch_.write("islands.toml", islands);
+  const Finished finished = testing::run(command({failing, arguments("right")}, 1));
+  EXPECT_EQ(codes(finished.output), (std::map<int, int>{{0, 1}, {1, 0}})) << finished.output;
+  EXPECT_EQ(finished.exit_code, 1);
+  EXPECT_THAT(log_of("failing"), testing::naming("nothing to mutate", "island"));
+}
+
 TEST_F(RunMany, WrongLinesAreRefusedBeforeAnyRunBegins) {
   const auto expect_refused = [&](const std::string& line, const auto&... parts) {
     const std::string file = scratch_.write("runs.jsonl", Json(arguments("first")).dump() + "\n\n" + line + '\n');
@@ -105,6 +118,7 @@ TEST_F(RunMany, WrongLinesAreRefusedBeforeAnyRunBegins) {
   expect_refused(Json(Words{file_}).dump(), "--out", "folder");
   expect_refused(Json(arguments("second", {"--until", "2h"})).dump(), "--until", "leave it out");
   expect_refused(Json(arguments("second", {"--sede", "2"})).dump(), "--sede");
+  expect_refused(Json(arguments("second/../first/")).dump(), "--out", "runs.jsonl:1", "folder of its own");
   const Finished empty = testing::run({EVODEVO_PROGRAM, "run-many", scratch_.write("empty.jsonl", "\n")});
   EXPECT_EQ(empty.exit_code, 2);
   EXPECT_THAT(empty.output, testing::naming("empty.jsonl", "no runs"));

@@ -1,4 +1,5 @@
 // Runs that begin with the population of another run.
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -140,6 +141,11 @@ TEST_F(Start, WhatCannotBeBornAgainIsRefusedBeforeAnythingIsWritten) {
   EXPECT_THAT(refusal({"experiment.start=\"elsewhere\""}),
               testing::naming("experiment.start: " + (scratch_ / "elsewhere").lexically_normal().string()));
   EXPECT_THAT(refusal({start_, "encoding.size=[3, 1, 1]"}), testing::naming("experiment.start", "encoding"));
+  std::filesystem::copy(scratch_ / "home", scratch_ / "damaged");
+  SQLite::Database((scratch_ / "damaged/run.sqlite").string(), SQLite::OPEN_READWRITE)
+      .exec("UPDATE individuals SET genes = substr(genes, 1, length(genes) - 4)");
+  EXPECT_THAT(refusal({"experiment.start=\"damaged\""}),
+              testing::naming("experiment.start", "damaged", "individual ", "undamaged copy"));
 
   std::string text = testing::small_experiment;
   const std::size_t begin = text.find("[encoding]"), end = text.find("[scene.gravity]");

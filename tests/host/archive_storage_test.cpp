@@ -211,6 +211,17 @@ TEST(Journals, AreChosenByTheFileSystem) {
   EXPECT_FALSE(journal_named("memory").has_value());
 }
 
+TEST_F(ArchiveStorage, ALogLocksNobodyOutWhereItIsNotTheDefault) {
+  { created(Journal::wal); }
+  RunDatabase run(folder_, SQLite::OPEN_READWRITE, std::nullopt);
+  run.prepare_for_rollback();  // as where the folder's file system has no shared memory
+  run.execute("UPDATE record SET value = '8' WHERE key = 'seed'");
+  run.set_journal(Journal::wal);
+  run.execute("UPDATE record SET value = '9' WHERE key = 'seed'");
+  EXPECT_TRUE(fs::exists(log_));
+  EXPECT_EQ(Archive::read(folder_).record("seed"), "9");
+}
+
 TEST_F(ArchiveStorage, AWishForAJournalIsRemembered) {
   { created(Journal::rollback); }
   Archive archive = Archive::resume(folder_);

@@ -10,6 +10,7 @@
 #include <set>
 #include <thread>
 
+#include "cluster/groups.hpp"
 #include "cluster/ranks.hpp"
 #include "cluster/wire.hpp"
 #include "evolution/breeding.hpp"
@@ -358,6 +359,41 @@ TEST_F(FarmRuns, EndWithTheNameOfARankThatDoesNotFit) {
               testing::naming("rank 1 on node8", "layout", "same version"));
   EXPECT_THAT(altered([](message::Hello& h) { h.scores.front() += " or so"; }),
               testing::naming("rank 1 on node8", "score", "same version"));
+}
+
+TEST(Farm, NamesRanksOfAGroupByTheirNumbersInTheRun) {
+  const Experiment experiment = testing::read(testing::small_experiment);
+  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
+  const auto boxes = std::make_shared<LocalChannel::Boxes>();
+  boxes->of.resize(4);
+  LocalChannel leader(boxes, 2), other(boxes, 3);
+  GroupChannel group(leader, {2, 3});
+  message::Hello hello = Worker(experiment, *simulator).hello();
+  hello.provenance.program = "abc";
+  other.send(2, message::packed(hello));
+  try {
+    const Farm farm(experiment, *simulator, group, {}, {.patience = patience});
+    FAIL() << "another build joins the run";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::naming("rank 3 on ", "abc", "than rank 2 on "));
+  }
+}
+
+TEST(DoJobs, TellsTheLeaderOfAJobThatCannotBeRead) {
+  const Experiment experiment = testing::read(testing::small_experiment);
+  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
+  Worker worker(experiment, *simulator);
+  const auto boxes = std::make_shared<LocalChannel::Boxes>();
+  boxes->of.resize(2);
+  LocalChannel leader(boxes, 0), other(boxes, 1);
+  std::string job = message::packed(message::Job{});
+  job.pop_back();
+  leader.send(1, job);
+  end_run(leader);
+  do_jobs(other, worker, patience);
+  const std::optional<Received> received = leader.receive();
+  ASSERT_TRUE(received);
+  EXPECT_NE(message::unpacked<message::Failure>(received->bytes).reason, "");
 }
 
 TEST(Serve, RefusesAnotherProtocol) {

@@ -252,6 +252,26 @@ TEST(Scenarios, AreSummedUpAsTheExperimentSays) {
   EXPECT_EQ(read.fitness.at(1).over, Over::mean);
 }
 
+/// Scores near the largest number.
+struct Enormous final : Fitness {
+  Request observes() const override { return {.settle = 0, .window = 0.02}; }
+  std::vector<Objective> objectives() const override { return {{"size", "1"}}; }
+  std::vector<double> score(const Observation&) const override { return {std::numeric_limits<double>::max()}; }
+};
+
+TEST(Scenarios, AreNotSummedUpToInfinity) {
+  Experiment experiment = with("\n[[scenario]]\nname = 'a'\nrepeat = 2\n");
+  experiment.fitness.clear();
+  experiment.fitness.push_back({std::make_unique<Enormous>(), Over::mean});
+  experiment.objectives = {{"size", "1", true}};
+  const Result mean = lived(experiment).result;
+  EXPECT_EQ(mean.status, Status::invalid);
+  EXPECT_THAT(mean.reason, testing::naming("mean", "size"));
+  EXPECT_TRUE(mean.objectives.empty());
+  experiment.fitness[0].over = Over::median;
+  EXPECT_EQ(lived(experiment).result.objectives, std::vector{std::numeric_limits<double>::max()});
+}
+
 TEST(Scenarios, OneAloneMayCount) {
   const std::string four = "\n[[scenario]]\nname = 'a'\nrepeat = 3\n[[scenario]]\nname = 'b'\n";
   for (const auto& [scenario, expected] : {std::pair<std::size_t, double>{0, 2.0}, {1, 10.0}}) {

@@ -131,12 +131,18 @@ struct Lottery : evodevo::Selection {
 /// Chooses survivors alone: the best.
 struct Best final : evodevo::Selection {
   evodevo::Traits traits() const override { return {.chooses_parents = false}; }
+  void parameters(evodevo::Parameters& p) override {
+    p.integer(seed_, "seed", {0, 1e18, "1"}, "A number that has no effect, of a wide range.");
+  }
   std::vector<std::uint32_t> survivors(std::span<const evodevo::Candidate> rows, std::uint32_t population,
                                        Rng&) const override {
     auto order = best_first(rows);
     order.resize(std::min<std::size_t>(order.size(), population));
     return order;
   }
+
+ private:
+  std::int64_t seed_ = 0;
 };
 
 /// Chooses parents alone, and needs three objectives.

@@ -27,7 +27,7 @@ struct Here {
 
 /// Evolves the islands of this rank's group, with all of its ranks.
 void evolve_group(const Here& here, Simulator& simulator, Post& post, const std::vector<std::uint32_t>& next,
-                  std::atomic<bool>& stop, bool mixed, const OnGeneration& tell) {
+                  const std::atomic<bool>& stop, bool mixed, const OnGeneration& tell) {
   std::vector<std::unique_ptr<Evaluator>> evaluators;
   std::vector<IslandRun> runs;
   for (std::size_t i = 0; i < here.archives.size(); ++i) {

@@ -166,7 +166,7 @@ int report_outcome(Islands& islands, Simulator& simulator, const IslandsProgress
   return ended_early;
 }
 
-int evolve_and_report(Islands& islands, Simulator& simulator, std::atomic<bool>& stop, const RunOutput& output) {
+int evolve_and_report(Islands& islands, Simulator& simulator, const std::atomic<bool>& stop, const RunOutput& output) {
   const bool is_live = prints_on_terminal() && verbosity() != Verbosity::quiet;
   const auto progress = progress_of(islands, stop, is_live);
   const auto tell = [&](std::int64_t island, const Summary& summary) {

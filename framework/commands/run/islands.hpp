@@ -46,8 +46,8 @@ std::unique_ptr<IslandsProgress> progress_of(const Islands& islands, const std::
 /// Returns an observer that tells a function of each generation of an island.
 Observer observer_of(const Experiment& island, std::function<void(std::int64_t, const Summary&)> tell);
 
-/// Does for a run with islands what evolve_and_report() does for one with a single population. If an island fails, sets
-/// `stop`, so that the others stop.
-int evolve_and_report(Islands& islands, Simulator& simulator, std::atomic<bool>& stop, const RunOutput& output);
+/// Does for a run with islands what evolve_and_report() does for one with a single population. If an island fails, the
+/// others stop.
+int evolve_and_report(Islands& islands, Simulator& simulator, const std::atomic<bool>& stop, const RunOutput& output);
 
 }  // namespace evodevo

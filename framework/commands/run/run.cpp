@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <iterator>
 
 #include "base/text.hpp"
 #include "cluster/farm.hpp"
@@ -259,6 +260,14 @@ bool is_complete(const Archive& archive, const Experiment& experiment) {
          (!is_verifiable(experiment) || is_verified(archive, experiment));
 }
 
+/// Returns the files of all islands of a run.
+std::vector<fs::path> files_of_islands(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const fs::path& island : archive_folders(folder))
+    std::ranges::move(files_of_run(island), std::back_inserter(files));
+  return files;
+}
+
 /// Continues the run with islands in a folder. `expected` has the experiments of its islands if the user names them.
 int go_on_with_islands(const Ranks& ranks, const fs::path& folder, const Given& given, TimeLimit* limit,
                        const std::vector<Experiment>* expected) {
@@ -269,7 +278,7 @@ int go_on_with_islands(const Ranks& ranks, const fs::path& folder, const Given& 
   const auto simulator = opened_simulator(first);
   warn_of_another_device(*simulator, islands.archives.front());
   warn_of_other_builds(first, *simulator, islands.archives.front());
-  const std::unique_ptr<GenerationLog> log = given_log(given, first, files_of_run(folder));
+  const std::unique_ptr<GenerationLog> log = given_log(given, first, files_of_islands(folder));
   return evolve_and_report(std::move(islands), *simulator, ranks, given, output_of(given, log.get(), limit));
 }
 

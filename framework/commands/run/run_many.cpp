@@ -3,6 +3,7 @@
 #include <atomic>
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -68,6 +69,9 @@ std::size_t threads_of_each(std::size_t runs) {
   return (cores + runs - 1) / runs;
 }
 
+/// Returns the absolute path of a folder, without a slash at the end.
+fs::path without_slash(const fs::path& folder) { return fs::absolute(folder / "").parent_path(); }
+
 /// Reads the runs in a file, of which at most `jobs` are made at once.
 std::vector<Given> read_runs(const std::string& file, std::size_t jobs) {
   std::istringstream text(read_input_file(file, most_bytes));
@@ -80,15 +84,21 @@ std::vector<Given> read_runs(const std::string& file, std::size_t jobs) {
   if (lines.empty()) throw UsageError(printable(file) + ": has no runs; give a file with a line for each run");
   const std::size_t threads = threads_of_each(std::min(jobs, lines.size()));
   std::vector<Given> runs;
-  for (auto& [place, arguments] : lines) runs.push_back(read_line(std::move(arguments), place, threads));
+  std::map<fs::path, std::string> places;  // of the lines, by their folders
+  for (auto& [place, arguments] : lines) {
+    runs.push_back(read_line(std::move(arguments), place, threads));
+    const fs::path folder = runs.back()["out"].as<std::string>();
+    std::error_code error;
+    const fs::path canonical = fs::weakly_canonical(without_slash(folder), error);
+    if (const auto [other, is_new] = places.emplace(error ? folder : canonical, place); !is_new)
+      throw UsageError(place + ": --out " + printable(folder.string()) + ": is the folder of " + other->second +
+                       ", too; give each run a folder of its own");
+  }
   return runs;
 }
 
 /// Returns the file for what a run in a folder prints.
-fs::path log_of(const fs::path& folder) {
-  const fs::path place = fs::absolute(folder / "").parent_path();  // without a slash at the end
-  return fs::path(place) += ".log";
-}
+fs::path log_of(const fs::path& folder) { return without_slash(folder) += ".log"; }
 
 /// Makes a run, and returns its exit code.
 int made(const Given& run) {

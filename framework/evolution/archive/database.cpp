@@ -102,7 +102,10 @@ RunDatabase::~RunDatabase() {
   }
 }
 
-void RunDatabase::prepare_for_rollback() { execute("PRAGMA locking_mode = EXCLUSIVE"); }
+void RunDatabase::prepare_for_rollback() {
+  execute("PRAGMA locking_mode = EXCLUSIVE");
+  is_exclusive_ = true;
+}
 
 /// Tries to switch to a write-ahead log. If that does not work in the folder, throws an exception if `must`, and
 /// otherwise returns false. In both cases, throws if another process uses the file or the disk is full.
@@ -120,13 +123,17 @@ bool RunDatabase::try_wal(bool must) {
 
 void RunDatabase::set_journal(std::optional<Journal> wish) {
   guarded([&] {
-    const bool wal = wish.value_or(journal_for(folder_)) == Journal::wal && try_wal(wish == Journal::wal);
-    if (!wal) {
+    const auto leave_wal = [&] {
       // in exclusive mode, SQLite needs no shared memory to merge a write-ahead log that was left behind
       database_.exec("PRAGMA locking_mode = EXCLUSIVE");
       database_.execAndGet("PRAGMA journal_mode = DELETE");
       database_.exec("PRAGMA locking_mode = NORMAL");
-    }
+      is_exclusive_ = false;
+    };
+    const bool wants_wal = wish.value_or(journal_for(folder_)) == Journal::wal;
+    if (wants_wal && is_exclusive_) leave_wal();  // a log that is begun in exclusive mode locks readers out
+    const bool wal = wants_wal && try_wal(wish == Journal::wal);
+    if (!wal) leave_wal();
     journal_ = wal ? Journal::wal : Journal::rollback;
   });
 }
@@ -155,7 +162,7 @@ void RunDatabase::take_snapshot() {
 void RunDatabase::start_writing() {
   database_.setBusyTimeout(writing_ms);
   journal_ = journal_in_use();
-  execute("PRAGMA synchronous = EXTRA");  // what was committed stays after a loss of power, with either journal
+  execute("PRAGMA synchronous = EXTRA");   // what was committed stays after a loss of power, with either journal
   execute("SELECT 1 FROM sqlite_master");  // makes SQLite create the log, which require_in_place() looks for
 }
 

@@ -75,6 +75,7 @@ class RunDatabase {
   std::optional<boost::interprocess::file_lock> lock_;
   mutable SQLite::Database database_;  ///< mutable because SQLite has no const interface, not even for reading
   Journal journal_ = Journal::rollback;
+  bool is_exclusive_ = false;  ///< since prepare_for_rollback()
   std::optional<std::chrono::steady_clock::time_point> last_checkpoint_;
 };
 

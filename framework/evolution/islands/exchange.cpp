@@ -28,7 +28,7 @@ std::optional<std::vector<Migrant>> LocalExchange::receive(const Route& route, s
   for (;; news_.wait_for(lock, between_looks)) {
     if (auto arrived = under_way_.extract({route, generation}); !arrived.empty()) return std::move(arrived.mapped());
     if (ended_.contains(route.from)) return std::vector<Migrant>();
-    if (stop) return std::nullopt;
+    if (stop || is_abandoned()) return std::nullopt;
   }
 }
 

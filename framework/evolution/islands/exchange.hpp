@@ -21,8 +21,8 @@ struct Route {
   auto operator<=>(const Route&) const = default;
 };
 
-/// Carries migrants. Implementations are LocalExchange, for islands in one process, and LeaderExchange
-/// (cluster/leaders.hpp), for several. Several threads may use it.
+/// Carries migrants. Implementations are LocalExchange, for islands in one process, and that of Post
+/// (cluster/post.hpp), for several. Several threads may use it.
 class Exchange {
  public:
   virtual ~Exchange() = default;
@@ -31,9 +31,17 @@ class Exchange {
   virtual void send(const Route& route, std::uint32_t generation, std::vector<Migrant> migrants) = 0;
   /// Says that an island has come to its end and sends nobody any more. Whoever waits for later migrants gets none.
   virtual void end(std::int64_t island) = 0;
-  /// Waits for those who emigrated after a generation. Returns nullopt if `stop` is set in the meantime.
+  /// Waits for those who emigrated after a generation. Returns nullopt if `stop` is set in the meantime, or abandon()
+  /// is called.
   virtual std::optional<std::vector<Migrant>> receive(const Route& route, std::uint32_t generation,
                                                       const std::atomic<bool>& stop) = 0;
+
+  /// Says that an island of this process has failed, so that its other islands stop.
+  void abandon() { is_abandoned_ = true; }
+  bool is_abandoned() const { return is_abandoned_; }
+
+ private:
+  std::atomic<bool> is_abandoned_ = false;
 };
 
 class LocalExchange : public Exchange {

@@ -25,7 +25,7 @@ void at_the_same_time(std::size_t count, const Call& call, const Abandon& abando
 }  // namespace
 
 std::vector<TimeSpent> evolve(std::vector<IslandRun>& islands, Exchange& exchange,
-                              const std::vector<std::uint32_t>& next, std::atomic<bool>& stop) {
+                              const std::vector<std::uint32_t>& next, const std::atomic<bool>& stop) {
   std::vector<Migration> migrations;
   for (const IslandRun& island : islands) migrations.emplace_back(island.experiment, exchange);
   for (std::size_t i = 0; i < islands.size(); ++i) migrations[i].repeat_departures(islands[i].archive, next);
@@ -37,10 +37,10 @@ std::vector<TimeSpent> evolve(std::vector<IslandRun>& islands, Exchange& exchang
       times[i] = evolve(experiment, evaluator, archive, stop, observer, &migrations[i]);
     } catch (...) {
       failures[i] = std::current_exception();
-      stop = true;
+      exchange.abandon();
     }
   };
-  at_the_same_time(islands.size(), run, [&] { stop = true; });
+  at_the_same_time(islands.size(), run, [&] { exchange.abandon(); });
   for (const std::exception_ptr& failure : failures)
     if (failure) std::rethrow_exception(failure);
   return times;

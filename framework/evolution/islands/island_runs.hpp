@@ -23,6 +23,6 @@ struct IslandRun {
 /// is only one. `next` has the next generation of each island of the whole run. If `stop` is set in the meantime, they
 /// end as evolve() does. If one fails, the others stop, and its exception is thrown. Returns the times of the islands.
 std::vector<TimeSpent> evolve(std::vector<IslandRun>& islands, Exchange& exchange,
-                              const std::vector<std::uint32_t>& next, std::atomic<bool>& stop);
+                              const std::vector<std::uint32_t>& next, const std::atomic<bool>& stop);
 
 }  // namespace evodevo

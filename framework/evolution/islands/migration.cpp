@@ -4,6 +4,7 @@
 
 #include "base/philox.hpp"
 #include "evolution/evolution.hpp"
+#include "evolution/record_check.hpp"
 #include "experiment/islands/neighbours.hpp"
 
 namespace evodevo {
@@ -48,6 +49,7 @@ void Migration::repeat_departures(const Archive& archive, const std::vector<std:
       std::vector<Migrant> migrants;
       for (const std::uint32_t id : emigrants[generation]) {
         ArchivedIndividual left = archive.known_individual(id);
+        check_genes(archive, island_, left);
         migrants.push_back({{island_.island, id}, left.origin, std::move(left.genome)});
       }
       exchange_.send({island_.island, to}, generation, std::move(migrants));
@@ -57,6 +59,7 @@ void Migration::repeat_departures(const Archive& archive, const std::vector<std:
 }
 
 std::optional<std::vector<Migrant>> Migration::arrivals(std::uint32_t generation, const std::atomic<bool>& stop) {
+  if (exchange_.is_abandoned()) return std::nullopt;
   std::vector<Migrant> all;
   if (generation == 0 || !island_.islands->migrate_after(generation - 1)) return all;
   for (const std::int64_t from : sources_of(island_.island, *island_.islands)) {

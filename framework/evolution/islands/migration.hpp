@@ -23,7 +23,8 @@ class Migration {
   void repeat_departures(const Archive& archive, const std::vector<std::uint32_t>& next);
 
   /// Waits for the migrants that arrive in a generation, and returns them in the order of the islands from which they
-  /// come; none if nobody migrates then. Returns nullopt if `stop` is set in the meantime.
+  /// come; none if nobody migrates then. Returns nullopt if `stop` is set in the meantime, or the exchange is
+  /// abandoned.
   std::optional<std::vector<Migrant>> arrivals(std::uint32_t generation, const std::atomic<bool>& stop);
 
   /// Returns copies of the immigrants of a generation that have a fitness, if they may take the places of others, as

@@ -1,5 +1,6 @@
 #include "experiment/tables/plugins.hpp"
 
+#include <algorithm>
 #include <climits>
 
 #include "base/text.hpp"
@@ -67,7 +68,9 @@ std::vector<fs::path> PluginsTable::recorded_path(const TomlReader& top) const {
   std::vector<fs::path> recorded;
   for (const fs::path& path : search_path_) {
     if (path == builtin_plugin_folder() || !is_plugin_path(path)) continue;
-    recorded.push_back(path.lexically_normal());
+    const fs::path normal = path.lexically_normal();  // a record's own path may be given again, so that it is trusted
+    if (std::ranges::find(recorded, normal) != recorded.end()) continue;
+    recorded.push_back(normal);
     if (const std::string fault = text_fault(recorded.back().string(), PATH_MAX); !fault.empty())
       throw ConfigError(top.location("plugins") + ": plugins: the path " + fault + "; rename the folder");
   }

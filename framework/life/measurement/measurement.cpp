@@ -18,7 +18,7 @@ double combined(std::vector<double> scores, Over over, bool maximise) {
     case Over::worst:
       return maximise ? scores.front() : scores.back();
     case Over::median:
-      return scores.size() % 2 == 1 ? scores[middle] : (scores[middle - 1] + scores[middle]) / 2;
+      return scores.size() % 2 == 1 ? scores[middle] : std::midpoint(scores[middle - 1], scores[middle]);
     case Over::mean:
       break;
   }
@@ -220,7 +220,13 @@ void Measurement::set_scores(const std::vector<Scores>& tests, Life& life) const
   for (std::size_t op = 0; op < places_.size(); ++op)
     for (std::size_t i = 0; i < places_[op].size(); ++i) {
       const bool is_objective = places_[op][i].role == Role::objective;
-      (is_objective ? result.objectives : result.measures).push_back(over_tests(op, i, tests));
+      const double score = over_tests(op, i, tests);
+      if (!std::isfinite(score)) {  // those of the tests are finite, but their sum need not be
+        result.objectives.clear();
+        result.measures.clear();
+        return life.end(Status::invalid, "mean of the tests not finite: " + title_of(places_[op][i]).name);
+      }
+      (is_objective ? result.objectives : result.measures).push_back(score);
     }
   for (std::size_t i = 0; i < result.measures.size(); ++i) {
     const Objective& measure = experiment_.measures[i];
