@@ -108,9 +108,11 @@ export async function inPage(page, action, argument) {
   );
 }
 
-/** Waits until a function of the page's parts, and of an argument, returns true. */
+/** Waits until a function of the page's parts, and of an argument, returns true. Throws if it has not after `patience`. */
 export async function until(page, condition, argument) {
-  while (!(await inPage(page, condition, argument)));
+  const end = Date.now() + patience;
+  while (!(await inPage(page, condition, argument)))
+    if (Date.now() > end) throw new Error(`it is still not true that ${condition}, with ${JSON.stringify(argument)}`);
 }
 
 /** Takes a picture of the stage without captions. The picture stays in the page, since counting pixels there is faster

@@ -11,6 +11,9 @@ export function element(tag, properties = {}, ...children) {
   return made;
 }
 
+/** Tells whether the reader prefers pages that do not move. */
+export const prefersStill = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
+
 /** Returns a number and the name of what is counted. */
 export const counted = (number, one, several = `${one}s`) => `${number.toLocaleString("en")} ${number === 1 ? one : several}`;
 

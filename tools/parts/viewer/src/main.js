@@ -4,7 +4,7 @@ import "./style.css";
 import { Champions } from "./champions.js";
 import { Charts } from "./charts.js";
 import { readPalette } from "./colours.js";
-import { element, short } from "./elements.js";
+import { element, prefersStill, short } from "./elements.js";
 import { Gallery } from "./gallery.js";
 import { migrantTables } from "./islands.js";
 import { Lineage } from "./lineage.js";
@@ -157,7 +157,7 @@ async function showFirst(viewer, isFilm) {
   if (link) return viewer.restore(link);
   const first = robots.findIndex(({ robot }) => robot.film.shots.length > 0);
   await viewer.show(Math.max(0, first));
-  const isStill = isFilm || isGallery || matchMedia("(prefers-reduced-motion: reduce)").matches;
+  const isStill = isFilm || isGallery || prefersStill();
   if (!isStill && first >= 0) viewer.toggle();
 }
 

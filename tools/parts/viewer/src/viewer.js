@@ -4,7 +4,7 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { stateText } from "./caption.js";
 import { developing, readPalette } from "./colours.js";
 import { Controls, keys, speeds } from "./controls.js";
-import { element, short } from "./elements.js";
+import { element, prefersStill, short } from "./elements.js";
 import { Ground } from "./ground.js";
 import { legend } from "./legend.js";
 import { Life } from "./life.js";
@@ -232,10 +232,10 @@ export class Viewer {
     if (Number.isFinite(time)) this.seek(time);
   }
 
-  /** Shows a robot, and scrolls to the viewer. */
+  /** Shows a robot, then scrolls to the viewer, whose place on the page depends on what it shows. */
   async open(index) {
-    this.root.scrollIntoView({ behavior: "smooth" });
     await this.show(index);
+    this.root.scrollIntoView({ behavior: prefersStill() ? "instant" : "smooth" });
   }
 
   async #life(index) {
