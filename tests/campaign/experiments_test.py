@@ -148,6 +148,9 @@ class Programs(unittest.TestCase):
         deaf = self.program("trap '' INT; echo generation 0; exec sleep 1000")
         with self.assertRaisesRegex(Broken, "^run, interrupted: not done after 1 s"):
             self.laws(deaf, seconds=1).run_in_parts(self.file, self.folder / "parts")
+        silent = self.program("exec sleep 1000")
+        with self.assertRaisesRegex(Broken, "^run, interrupted: not done after 1 s"):
+            self.laws(silent, seconds=1).run_in_parts(self.file, self.folder / "parts")
 
     def test_what_cannot_be_shown(self):
         self.assertRegex(self.broken("[ $1 != show ] || exit 7"), "^show: exit code 7")

@@ -209,6 +209,16 @@ class Evodevo(unittest.TestCase):
             for point in reports:
                 case.attempt(run, point, nothing_else)
 
+    def test_a_build_without_mpi_leaves_ranks_out_by_name(self):
+        library = self.folder / "lib" / "faults.so"
+        library.parent.mkdir()
+        library.touch()
+        ranks = [case for case in Storage(PROGRAM, library, self.folder).cases() if isinstance(case, DyingRank)]
+        for case in ranks:
+            self.assertEqual(case.count(), 0)
+            self.assertRegex(case.missing, "built without MPI|no mpirun")
+        self.assertEqual(len(ranks), 2)
+
     def test_a_rank_whose_death_costs_generations_is_found(self):
         program = self.folder / "program"
         alone = '[ -n "$OMPI_COMM_WORLD_RANK" ] || rm -rf "${5%log}run"'  # $5 is the log beside the run

@@ -146,6 +146,17 @@ class Runs(unittest.TestCase):
         self.assertIn("ended early", self.printed(job))
         self.expect_same_rows("resumed")
 
+    def test_a_cancelled_job_is_not_queued_again(self):
+        job = self.begin()
+        run("scancel", job)
+        wait_until(cluster.is_quiet, "nothing of the job is left", cluster.logs)
+        self.assertEqual(self.state(job), ("CANCELLED", 0), self.said(job))
+
+    def test_options_that_the_script_adds_may_be_given(self):
+        job = self.submit("--wait", "--cpus-per-task=1", SCRIPT, "walk.toml", "--resume", "--threads=1", "--out", "given")
+        self.wait_for_end(job)
+        self.expect_same_rows("given")
+
     def test_slurm_sends_that_signal_itself(self):
         # a minute with a signal that is due two minutes before its end; the run would take hours
         long = ("--set", "experiment.evaluations=4270003")

@@ -249,6 +249,32 @@ class Comparison(unittest.TestCase):
             shutil.rmtree(self.folder / "out" / kind / "plain")
         self.assertEqual(self.compare().returncode, 0)
 
+    def test_islands_are_refused_and_nothing_is_lost(self):
+        settings = "islands={count=2, topology='ring', every=1, migrants=1, emigrants='best', replaced='worst'}"
+        run = self.folder / "out" / "runs" / "plain" / "seed-1" / "island-1" / "run.sqlite"
+        run.parent.mkdir(parents=True)
+        run.touch()
+        refused = self.compare("--set", settings)
+        self.assertEqual((refused.returncode, refused.stderr.count("\n")), (2, 1), refused.stderr)
+        self.assertIn("--set islands=", refused.stderr)
+        self.plain.write_text(f"{PLAIN}\n[islands]\ncount = 2\n")
+        refused = self.compare()
+        self.assertEqual((refused.returncode, refused.stderr.count("\n")), (2, 1), refused.stderr)
+        self.assertIn(f"{self.plain}: islands: ", refused.stderr)
+        self.assertTrue(run.exists())
+
+    def test_files_that_cannot_be_read_are_named(self):
+        self.assertEqual(self.compare().returncode, 0)
+        made_from = self.folder / "out" / "rows" / "plain" / "made-from.json"
+        database = self.folder / "out" / "runs" / "plain" / "seed-1" / "run.sqlite"
+        (self.folder / "out" / "rows" / "plain" / "seed-1.json").unlink()
+        other = self.folder / "a file"
+        for file, text, out in ((database, "no database", "out"), (made_from, "{", "out"), (other, "", "a file")):
+            file.write_text(text)
+            refused = self.compare(out=out)
+            self.assertEqual((refused.returncode, refused.stderr.count("\n")), (2, 1), refused.stderr)
+            self.assertRegex(refused.stderr, rf"\Acompare: {file}")
+
     def test_faults_are_found_before_anything_runs(self):
         refused = self.compare("--sweep", "development.cycle_times=1,2")
         self.assertEqual(refused.returncode, 2)

@@ -66,8 +66,9 @@ END
 stand_in ninja <<<'[ ! -e "$2/bin/evodevo" ] || echo "ninja: no work to do."'
 # a stand-in for Python that has the modules whose packages are marked as installed
 stand_in python3 <<'END'
-if [ "$1" = -c ]; then
-  for module in "${@:3}"; do grep -qx "python3-$module" "$scratch/installed" || exit 1; done
+echo "modules from $PYTHONPATH" >>"$scratch/called"
+if [ "$2" = -c ]; then
+  for module in "${@:4}"; do grep -qx "python3-$module" "$scratch/installed" || exit 1; done
 else
   echo "python3 $*"
 fi
@@ -131,6 +132,9 @@ case_tool_help() {
     succeeded
     [[ $output == "tools/$name "*"  tools/$name "* ]] || fail "there is no page with an example"
   done
+  call tools/test --help
+  succeeded
+  [[ $output == *"CTest"* ]] || fail "it does not say what it does with arguments"
   for name in compare tune figure; do
     call tools/$name --help
     succeeded
@@ -148,6 +152,8 @@ case_charts() {
   call tools/figure some.json out.svg
   succeeded
   [ "$output" = "python3 -P -m figure some.json out.svg" ] || fail "it does not draw"
+  PYTHONPATH=/elsewhere call tools/figure some.json out.svg
+  [[ $(tail -n 1 "$called") = "modules from $checkout/tools/parts:/elsewhere" ]] || fail "the user's modules are hidden"
   has python3-matplotlib
   has_not python3-scipy
   call tools/compare some.toml

@@ -75,9 +75,10 @@ class Environments(Scratch):
 
     def test_a_file_that_is_not_json_is_refused_in_a_line(self):
         file = self.folder / "environments.json"
-        file.write_text("[")
-        done = called(file, self.folder / "out.svg")
-        self.assertEqual((done.returncode, done.stderr.count("\n"), done.stderr[:8]), (1, 1, "figure: "))
+        for text in ("[", "[]", "{}", '{"masses": []}', "[1]"):
+            file.write_text(text)
+            done = called(file, self.folder / "out.svg")
+            self.assertEqual((done.returncode, done.stderr.count("\n"), done.stderr[:8]), (1, 1, "figure: "), text)
 
 
 class Run(Scratch):

@@ -6,6 +6,7 @@ import dataclasses
 import importlib.util
 import io
 import json
+import multiprocessing
 import os
 import re
 import subprocess
@@ -218,6 +219,22 @@ class OfExperiments(unittest.TestCase):
         with self.assertRaises(TypeError):
             self.experiment.decode([None])
 
+    def test_an_experiment_of_before_a_fork_is_named_and_does_not_wait(self):
+        before = [core.Experiment(self.file)]
+        genomes = before[0].random_genomes(1)
+
+        def child():
+            with self.assertRaisesRegex(ValueError, "small.toml: .*forked.*in this process"):
+                before[0].decode(genomes)
+            before.clear()
+            os._exit(0 if core.Experiment(self.file).decode(genomes) else 3)
+
+        process = multiprocessing.get_context("fork").Process(target=child)
+        process.start()
+        process.join(60)
+        self.addCleanup(process.kill)
+        self.assertEqual(process.exitcode, 0)
+
 
 class Arguments(unittest.TestCase):
     def fails(self, pattern, *bodies, seconds=0.1, **arguments):
@@ -231,6 +248,10 @@ class Arguments(unittest.TestCase):
             r"velocities: .* expected \[2, 3\]": {"velocities": [[0, 0, 0]]},
             r"springs: has numbers of the type float64": {"springs": [[0, 0.5]]},
             r"rest_lengths: .* expected \[1\]": {"rest_lengths": [1, 2]},
+            r"springs: join masses 0 to 2; expected indices of 2 masses": {"springs": [[0, 2]], "rest_lengths": None},
+            r"masses: .*expected numbers": {"masses": ["light", "heavy"]},
+            r"start_energy: .*expected a number": {"start_energy": "much"},
+            r"time: .*expected a number": {"time": "late"},
         }.items():
             with self.assertRaisesRegex(ValueError, pattern):
                 hung(**change)
@@ -262,6 +283,14 @@ class Arguments(unittest.TestCase):
         self.fails(r"simulation\.method = .*rk5", simulation={"method": "rk5"})
         self.fails(r"scene\.friction.*\[scene\.floor\]", scene={"friction": {}})
         self.fails(r"scene\.floor: .*expected a number", scene={"floor": object()})
+        self.fails(r"simulation\.method: '\\udcff'; expected a number, a text", simulation={"method": "\udcff"})
+        self.fails(r"scene\.gravity: .*expected a number, a text", scene={"gravity": {"\udcff": 1}})
+        self.fails(r"simulation\.dt: 1j; expected a number", simulation={"dt": 1j})
+        self.fails(r"simulation\.dt = 1(e\+|0)", simulation={"dt": 10**30})
+        self.fails(r"simulation\.dt: 10+; expected", simulation={"dt": 10**400})
+        for half in (np.array(0.5), np.float32(0.5), np.float64(0.5)):
+            self.fails(r"simulation\.dt = 0\.5", simulation={"dt": half})
+        self.fails(r"simulation\.threads = -3", simulation={"threads": np.array(-3)})
         given, = core.simulate([hung()], 0.1, simulation={**EXACT, "dt": np.float32(0.5) * np.float64(0.001)})
         self.assertEqual(given.dt, 0.0005)
 
@@ -273,6 +302,7 @@ class Arguments(unittest.TestCase):
         self.fails(r"sampled: \"speed\"; expected some of centre", sampled=["speed"])
         self.fails("sample_hz: -1", sample_hz=-1)
         self.fails(r"bodies\[0\]: sample_hz: 5000 .* at most 2000 Hz", sample_hz=5000)
+        self.assertEqual(core.simulate([], 1e6, sample_hz=1e300), [])
 
     def test_a_gpu_gives_the_same_motion_or_is_named_as_missing(self):
         try:

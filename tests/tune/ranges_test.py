@@ -49,6 +49,7 @@ class Ranges(unittest.TestCase):
             ("a=x,\"x\"", '"x": given twice'),
             ("a=1,1", "1: given twice"),
             ("experiment.evaluations=10..20", "experiment.evaluations cannot be tuned: .*give it with --set"),
+            ("experiment.hours=0.1..1", "experiment.hours cannot be tuned"),
             ("experiment.spring_evaluations=1e9..2e9", "experiment.spring_evaluations cannot be tuned"),
             ("experiment.seed=1..3", "experiment.seed cannot be tuned: .*leave it out"),
             ("experiment.verify=0..3", "experiment.verify cannot be tuned"),

@@ -190,6 +190,22 @@ test("a snap, which could not read the pages, is no browser", () => {
   }
 });
 
+test("a robot that never lived cannot be filmed, and is left out of a gallery's picture", () => {
+  const run = scratch.path("barren");
+  const file = scratch.path("barren.toml");
+  writeFileSync(file, readFileSync(scratch.file, "utf8").replace("stiffness = 3000", "stiffness = 0"));
+  const soft = ["muscle", "muscle2", "tissue", "bone"].flatMap((name) => ["--set", `materials.${name}.stiffness=0`]);
+  evodevo("run", file, "--out", run, ...soft);
+  for (const options of [["--out", "none.png"], ["--at", "1", "--out", "none.png"], ["--out", "none.mp4"]]) {
+    const words = ["film", run, "--individual", "0", ...options.map((word) => (word.includes(".") ? scratch.path(word) : word))];
+    const { status, stderr } = spawnSync(process.env.EVODEVO_PROGRAM, words, { encoding: "utf8" });
+    assert.notEqual(status, 0);
+    assert.match(stderr, /^evodevo: .*none\.(png|mp4): there is nothing to draw: the robot never lived/m);
+  }
+  evodevo("gallery", file, ...soft, "--count", "3", "--out", scratch.path("barren.png"));
+  assert.equal(sizeOf(scratch.path("barren.png"))[0], 1280);
+});
+
 test("a gallery can be a picture", () => {
   evodevo("gallery", scratch.file, "--count", "3", "--out", scratch.path("gallery.png"));
   const [width, height] = sizeOf(scratch.path("gallery.png"));

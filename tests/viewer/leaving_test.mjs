@@ -43,20 +43,58 @@ test("a chart leaves as SVG that shows what the chart shows", async () => {
     ["How evaluations ended", "path[d$=Z]"],
   ]) {
     const { content } = await saved(figure(title).getByRole("button", { name: "SVG" }));
-    const [error, count, outside] = await page.evaluate(
+    const [error, count, strange] = await page.evaluate(
       ([text, selector]) => {
         const { documentElement: root } = new DOMParser().parseFromString(text, "image/svg+xml");
-        const numbers = [...root.querySelectorAll("circle")].flatMap((one) => ["cx", "cy"].map((key) => one.getAttribute(key)));
-        return [root.querySelector("parsererror"), root.querySelectorAll(selector).length, numbers.filter(Number.isNaN)];
+        const all = [...root.querySelectorAll("circle")].flatMap((one) => ["cx", "cy"].map((key) => one.getAttribute(key)));
+        const strange = all.filter((text) => !Number.isFinite(Number(text)));
+        return [root.querySelector("parsererror"), root.querySelectorAll(selector).length, strange];
       },
       [content.toString(), shapes],
     );
-    assert.deepEqual([error, outside], [null, []]);
+    assert.deepEqual([error, strange], [null, []]);
     assert.ok(count > 0, title);
   }
   const living = archived(scratch.run, "SELECT count(*) FROM individuals WHERE died IS NULL AND status = 'ok'")[0][0];
   const { content } = await saved(figure("Age and fitness of the living").getByRole("button", { name: "SVG" }));
   assert.equal(content.toString().match(/<circle/g).length, living);
+});
+
+test("what a zoomed chart does not show is cut off in its SVG", async () => {
+  const chart = figure("Age and fitness of the living");
+  const inside = await inPage(page, ({ charts: { byName } }) => {
+    const { plot } = byName.ages;
+    const { min, max } = plot.scales.x;
+    plot.setScale("x", { min: min + 0.4 * (max - min), max: min + 0.6 * (max - min) });
+    return [plot.over.clientWidth, plot.over.clientHeight];
+  });
+  const { content } = await saved(chart.getByRole("button", { name: "SVG" }));
+  const [isOutside, ...shown] = await page.evaluate((text) => {
+    const { documentElement: root } = new DOMParser().parseFromString(text, "image/svg+xml");
+    const cut = root.querySelector(root.querySelector("[clip-path]").getAttribute("clip-path").slice(4, -1)).firstChild;
+    const circles = [...root.querySelectorAll("circle")];
+    const [width, height] = ["width", "height"].map((name) => Number(cut.getAttribute(name)));
+    const isOutside = circles.some((one) => one.getAttribute("cx") < 0 || one.getAttribute("cx") > width);
+    return [isOutside && circles.every((one) => one.closest("[clip-path]")), width, height];
+  }, content.toString());
+  assert.ok(isOutside);
+  shown.forEach((size, i) => assert.ok(Math.abs(size - inside[i]) < 1, `${shown} for ${inside}`));
+  await inPage(page, ({ charts: { byName } }) => byName.ages.draw());
+});
+
+test("a stacked chart leaves as CSV with the numbers behind its areas", async () => {
+  const { content } = await saved(figure("How evaluations ended").getByRole("button", { name: "CSV" }));
+  const [head, ...rows] = content.toString().trim().split("\n");
+  const names = head.split(",");
+  assert.deepEqual(names.slice(0, 4), ["generation", "ok", "invalid", "diverged"]);
+  const query = "SELECT evaluations, invalid, diverged FROM generations ORDER BY generation";
+  archived(scratch.run, query).forEach(([evaluations, invalid, diverged], i, all) => {
+    const of = Object.fromEntries(rows[i].split(",").map((number, k) => [names[k], Number(number)]));
+    assert.deepEqual([of.generation, of.invalid, of.diverged], [i, invalid, diverged]);
+    const born = evaluations - (i > 0 ? all[i - 1][0] : 0);
+    const ended = names.slice(1).reduce((total, name) => total + of[name], 0);
+    assert.equal(ended, born, rows[i]);
+  });
 });
 
 test("the stage leaves as a picture", async () => {
@@ -112,6 +150,9 @@ test("a link restores the robots, the moment, the colour and the camera", async 
   const before = await inPage(page, state);
   assert.deepEqual([before.chosen, before.time, before.mode, before.view], [[1, 0], 1.25, "stress", "front"]);
   assert.deepEqual(await inPage(again, state), before);
+  await inPage(again, ({ viewer }) => viewer.show(0));
+  await again.evaluate(() => (location.hash = location.hash.replace("time=1.250", "time=0.500")));
+  await until(again, ({ viewer: { chosen, time } }) => chosen.join() === "1,0" && time === 0.5);
   await again.close();
   const strange = await opened(browser, report, {}, { hash: "#robot=99&time=x&camera=1,2&colour=__proto__&view=constructor" });
   assert.deepEqual(strange.complaints, []);

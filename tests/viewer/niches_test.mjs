@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import { after, before, test } from "node:test";
-import { evodevo, inPage, launch, opened, Scratch, until } from "./support.mjs";
+import { evodevo, inPage, launch, opened, Scratch, until, writeChanged } from "./support.mjs";
 
 const scratch = new Scratch();
 const bold = "<b>reach</b>"; // would be bold if it were interpreted as markup
@@ -13,13 +13,8 @@ let browser, page, report;
 
 /** Writes a page with the data of another one, as changed by a function, and opens it. */
 async function changed(name, change, options) {
-  const data = /(?<=<script id="data" type="application\/json">).*?(?=<\/script>)/s;
-  const text = readFileSync(report, "utf8").replace(data, (json) => {
-    const { runs, ...rest } = JSON.parse(json);
-    return JSON.stringify({ ...rest, runs: change(runs[0]) }).replaceAll("<", "\\u003c");
-  });
   const file = scratch.path(`${name}.html`);
-  writeFileSync(file, text);
+  writeChanged(report, file, (data) => ({ ...data, runs: change(data.runs[0]) }));
   return opened(browser, file, options);
 }
 

@@ -19,6 +19,7 @@ import {
   Scratch,
   sum,
   until,
+  writeChanged,
 } from "./support.mjs";
 
 const scratch = new Scratch();
@@ -196,6 +197,34 @@ test("play goes on in time, and stops at the end", async () => {
   await inPage(page, ({ viewer }) => (viewer.setSpeed(4), viewer.seek(2.8)));
   await page.getByRole("button", { name: "Play" }).click();
   await until(page, ({ viewer }) => viewer.time === viewer.end && !viewer.playing);
+});
+
+test("what is pressed before the robot is there does no harm", async () => {
+  const early = await opened(browser, report, {}, {
+    before: () => {
+      const press = () => ["]", " ", "ArrowLeft"].forEach((key) => document.dispatchEvent(new KeyboardEvent("keydown", { key })));
+      const pressing = setInterval(() => (window.evodevo?.then(() => clearInterval(pressing)), press()));
+    },
+  });
+  await inPage(early, ({ viewer }) => (viewer.pause(), viewer.setSpeed(4), viewer.seek(viewer.end - 0.5), viewer.toggle()));
+  await until(early, ({ viewer }) => viewer.time === viewer.end && !viewer.playing);
+  assert.deepEqual(early.complaints, []);
+  await early.close();
+});
+
+test("muscles a whole number of turns apart have the same colour", async () => {
+  const legendOf = (of) => of.locator(".looks .legend").evaluate((legend) => legend.innerHTML);
+  await inPage(page, ({ viewer }) => (viewer.show(0), viewer.setMode("material")));
+  for (const turns of [-2, -1, 1, 3]) {
+    const turned = (material) => ({ ...material, phase: material.phase + 2 * Math.PI * turns + 1e-9 });
+    writeChanged(report, scratch.path("turned.html"), (data) => {
+      for (const { robots } of data.runs) for (const { film } of robots) film.materials = film.materials?.map(turned);
+      return data;
+    });
+    const other = await opened(browser, scratch.path("turned.html"));
+    assert.equal(await legendOf(other), await legendOf(page), `${turns} turns`);
+    await other.close();
+  }
 });
 
 test("each colour mode looks different and says what it shows", async () => {

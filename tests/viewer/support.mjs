@@ -1,11 +1,11 @@
 // Code that the tests of the page share: a small run, a browser, and functions that examine pictures.
 import { execFileSync } from "node:child_process";
-import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
 
-export const { chromiumProgram, launch, patience } = await import(pathToFileURL(join(process.env.EVODEVO_VIEWER, "browser.mjs")).href);
+export const { chromiumProgram, inTime, launch, patience } = await import(pathToFileURL(join(process.env.EVODEVO_VIEWER, "browser.mjs")).href);
 
 /** Names that would be harmful if they were interpreted as markup. */
 export const experimentName = `<img src=x onerror="window.harmed=1">`;
@@ -78,6 +78,13 @@ export function archived(folder, query) {
   return JSON.parse(execFileSync("python3", ["-c", program, join(folder, "run.sqlite"), query], { encoding: "utf8" }));
 }
 
+/** Writes a page with the data of another one, as changed by a function. */
+export function writeChanged(from, to, change) {
+  const data = /(?<=<script id="data" type="application\/json">).*?(?=<\/script>)/s;
+  const changed = (json) => JSON.stringify(change(JSON.parse(json))).replaceAll("<", "\\u003c");
+  writeFileSync(to, readFileSync(from, "utf8").replace(data, changed));
+}
+
 /** Opens a page from its file. It does not play by itself, unless `options` say that motion is welcome; keeps the page's requests in `requests`, and its errors and warnings in `complaints`. */
 export async function opened(browser, file, options = {}, { hash = "", before: hidden } = {}) {
   const page = await browser.newPage({ viewport: { width: 640, height: 600 }, reducedMotion: "reduce", ...options });
@@ -92,13 +99,13 @@ export async function opened(browser, file, options = {}, { hash = "", before: h
   page.on("pageerror", (error) => page.complaints.push(error.message));
   if (hidden) await page.addInitScript(hidden);
   await page.goto(pathToFileURL(file).href + hash, { timeout: patience });
-  await page.evaluate(async () => void (await window.evodevo));
+  await inTime(page.evaluate(async () => void (await window.evodevo)));
   return page;
 }
 
 /** Calls a function in the page with the page's parts {viewer, charts, data}, then waits until the page is drawn. */
 export async function inPage(page, action, argument) {
-  return page.evaluate(
+  const answer = page.evaluate(
     async ([text, given]) => {
       const result = await new Function(`return (${text})`)()(await window.evodevo, given);
       await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
@@ -106,6 +113,7 @@ export async function inPage(page, action, argument) {
     },
     [action.toString(), argument],
   );
+  return inTime(answer);
 }
 
 /** Waits until a function of the page's parts, and of an argument, returns true. Throws if it has not after `patience`. */

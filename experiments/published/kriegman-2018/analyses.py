@@ -174,12 +174,14 @@ def lives_of_champion(folder, mutants):
 
 
 def text(values):
-    """Returns the median of values and its interval, in which failed lives count as lives without a way."""
-    return median_with_interval([0.0 if np.isnan(value) else float(value) for value in values])
+    """Returns the median of values and its interval."""
+    return median_with_interval([float(value) for value in values])
 
 
 def report(table):
-    """Prints the medians over champions for each experiment. `table`: a DataFrame of COLUMNS."""
+    """Prints the medians over champions for each experiment, in which failed lives count as lives without a way.
+    `table`: a DataFrame of COLUMNS."""
+    table = table.fillna({"distance": 0.0})
     for experiment, rows in table.groupby("experiment", sort=False):
         again = rows[rows["life"] == "as it is"]
         print(f"{experiment}: {len(again)} champions, {(again['turns'].abs() >= 1).sum()} of which roll, that is, turn "

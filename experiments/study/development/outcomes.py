@@ -84,7 +84,7 @@ class Program:
 
     def json(self, *words):
         """Returns what a command prints."""
-        done = subprocess.run([self._path, *map(str, words)], check=True, capture_output=True, text=True)
+        done = subprocess.run([self._path, *map(str, words)], check=True, stdout=subprocess.PIPE, text=True)
         return json.loads(done.stdout)
 
     def make(self, out, runs):
@@ -139,6 +139,8 @@ def born_again(_, out, arm, run):
     numbers, and in how many of them and of those of its verification, which also begin in slightly other places, it
     keeps ENOUGH; None if nothing has been measured and the run is gone. The same holds for the other outcomes."""
     shown = rows.read(arm.row(run))
+    if shown["best"] is None:
+        return None
     distance = shown["best"]["objectives"][shown["objectives"][0]["name"]]
     found = {}
     if lives := distances_of_lives(out, arm, run):
@@ -215,8 +217,8 @@ def matured(program, run, number):
     of the run, it can diverge."""
     try:
         return program.json("body", run, "--individual", number, "--matured")
-    except subprocess.CalledProcessError as error:
-        print(f"left out: {error.stderr.splitlines()[-1]} ({run})", file=sys.stderr)
+    except subprocess.CalledProcessError:  # the program has said why
+        print(f"left out: individual {number} of {run}", file=sys.stderr)
         return None
 
 
@@ -242,9 +244,11 @@ def between_bodies(program, out, arm, run):
 
 def line_of_the_best(program, out, arm, run):
     """Returns the shares of the run after which the oldest genes of its best robot began to evolve, and after which
-    that robot was born, %."""
+    that robot was born, %; None if there is no such robot, or only one generation."""
     shown = rows.read(arm.row(run))
     best, last = shown["best"], len(shown["generations"]) - 1
+    if best is None or last == 0:
+        return None
     generations = {"the line began": last - best["age"], "the robot was born": best["generation"]}
     return {what: 100 * generation / last for what, generation in generations.items()}
 

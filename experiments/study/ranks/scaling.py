@@ -9,8 +9,8 @@ not. The simulation deals out jobs as framework/cluster/farm.cpp does, and takes
 and its host:
 
 - ROBOT_SECONDS: the life of a robot on an idle multiprocessor of an NVIDIA H200: 1.3e4 springs, 60,000 steps in the life
-  of experiments/evo-devo.toml, 220,000 in that of experiments/paper.toml, and 3.3e11 spring evaluations per second of
-  132 multiprocessors. Lives differ by SPREAD.
+  of experiments/evo-devo.toml, 220,000 in that of experiments/paper.toml, and 4.57e11 spring evaluations per second of
+  132 multiprocessors that are busy all the time (experiments/results/README.md, "Speed"). Lives differ by SPREAD.
 - What rank 0 does alone for each robot (seconds_breed, seconds_select and seconds_archive in the record of a run of
   65,536 robots on 16 cores of an Intel Xeon). It breeds on all threads, and writes a generation into the archive while
   the next one is evaluated.
@@ -29,7 +29,7 @@ import random
 MEASURED = pathlib.Path(__file__).resolve().parents[2] / "results/ranks/measured.csv"
 MULTIPROCESSORS = 132
 SPRING_EVALUATIONS = {"evo-devo.toml": 1.33e4 * 60_000, "paper.toml": 1.33e4 * 220_000}
-RATE = 3.3e11
+RATE = 4.57e11
 SPREAD = 0.25
 BREED = 5.8e-6  # s for each robot
 ARCHIVE = 29e-6
@@ -197,7 +197,7 @@ def main():
     given.out.mkdir(parents=True, exist_ok=True)
     write(rows, given.out / "scaling.csv")
     draw(rows, given.out / "scaling.svg")
-    islands = [n for n in (1, 10, 20, 50, 80, 100, 125, 200, 250, 500, 1000, 2000, 5000, 10_000) if n <= given.most]
+    islands = [n for n in (1, 10, 20, 50, 80, 100, 125, 200, 250, 500, 1000, 2000, 5000, 10_000) if given.most % n == 0]
     rows = [row for name in SPRING_EVALUATIONS for row in island_rows(name, given.most, islands)]
     write(rows, given.out / "islands.csv")
     draw_islands(rows, given.out / "islands.svg")

@@ -59,8 +59,10 @@ def run(program, out, ingredient, value, change, seed):
         words = [program, "run", *command(change), "--seed", str(seed), "--quiet", "--no-report", "--out", str(folder)]
         subprocess.run(words, check=True, stdout=subprocess.DEVNULL)
         (folder / "done").touch()
-    shown = subprocess.run([program, "show", str(folder), "--json"], check=True, capture_output=True, text=True)
+    shown = subprocess.run([program, "show", str(folder), "--json"], check=True, stdout=subprocess.PIPE, text=True)
     best = json.loads(shown.stdout)["best"]
+    if best is None:
+        return {"ingredient": ingredient, "value": value, "seed": seed, "distance": "", "champion": "no robot with a fitness"}
     marks = ", ".join(best["verification"]["marks"]) or "verified"
     return {"ingredient": ingredient, "value": value, "seed": seed, "distance": best["objectives"]["distance"], "champion": marks}
 

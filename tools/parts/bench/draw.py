@@ -33,8 +33,11 @@ def plot(axes, rows, across):
 
 
 def draw(stem):
-    with open(f"{stem}.json", encoding="utf-8") as stream:
-        reports = json.load(stream)
+    try:
+        with open(f"{stem}.json", encoding="utf-8") as stream:
+            reports = json.load(stream)
+    except (OSError, ValueError) as error:
+        sys.exit(f"{stem}.json: cannot be read: {error}; write it with tools/parts/bench/record")
     sizes = report_of(reports, "Speed for bodies of different sizes")
     numbers = report_of(reports, "Speed for different numbers of bodies")
     peers = report_of(reports, "The paper's simulators and ours", masses=1000)["rows"]

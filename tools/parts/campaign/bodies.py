@@ -165,7 +165,7 @@ def results_in(told):
 
 
 def first_complaint(told):
-    """Returns the first line of a sanitizer that says what is wrong, or the last line of the program."""
+    """Returns the first line of a sanitizer that says what is wrong, or the first line of the program."""
     lines = [line.strip("= ") for line in told.splitlines() if line.strip("= ") and not line.startswith("{")]
     complaints = [line for line in lines if not line.startswith("COMPUTE-SANITIZER")]
     return f": {complaints[0]}" if complaints else ""

@@ -1,10 +1,21 @@
 """Calls of the program that a campaign tries."""
 
+import pathlib
+import shutil
 import subprocess
 
 # Open MPI refuses to work for root, or to start more processes than cores, unless it is told
 AS_ROOT = ("env", "OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1")
 RANKS = (*AS_ROOT, "mpirun", "--oversubscribe", "--bind-to", "none", "-n")
+
+
+def obstacle_to_ranks(built):
+    """Returns why no run of several ranks can be made with what was built or installed in a folder; None if it can."""
+    if not shutil.which("mpirun"):
+        return "there is no mpirun (Debian: openmpi-bin)"
+    if not pathlib.Path(built, "lib", "libevodevo-mpi.so").exists():
+        return "evodevo was built without MPI"
+    return None
 
 
 class Broken(Exception):

@@ -9,10 +9,11 @@ import shutil
 import signal
 import sqlite3
 import subprocess
+import threading
 import tomllib
 
 from .amounts import CONTROLS, are_changed_alike, first_robots, keeps_amounts
-from .calls import RANKS, Broken, Program, require
+from .calls import RANKS, Broken, Program, obstacle_to_ranks, require
 from .rounding import moves_as_in_double
 from .run_page import Page
 
@@ -31,10 +32,8 @@ class Laws:
         self._evodevo, self._folder = Program(program, seconds), folder
         self._page = Page(built)
         self.left_out = {}
-        if not shutil.which("mpirun"):
-            self.left_out["3 ranks"] = "there is no mpirun"
-        elif not (built / "lib" / "libevodevo-mpi.so").exists():
-            self.left_out["3 ranks"] = "evodevo was built without MPI"
+        if obstacle := obstacle_to_ranks(built):
+            self.left_out["3 ranks"] = obstacle
         if self._page.obstacle:
             self.left_out["pages"] = self._page.obstacle
 
@@ -147,13 +146,14 @@ class Laws:
         done."""
         command = [self._evodevo.path, *words]
         with subprocess.Popen([*map(str, command)], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as run:
+            end = threading.Timer(seconds, run.kill)
+            end.start()
             next((each for each in run.stdout if each.startswith(line)), None)
             run.send_signal(signal.SIGINT)
-            try:
-                run.communicate(timeout=seconds)
-            except subprocess.TimeoutExpired:
-                run.kill()
-                raise Broken(f"{words[0]}, interrupted: not done after {seconds} s") from None
+            run.communicate()
+            end.cancel()
+        if run.returncode == -signal.SIGKILL:
+            raise Broken(f"{words[0]}, interrupted: not done after {seconds} s")
         if run.returncode not in (0, STOPPED):
             raise Broken(f"{words[0]}, interrupted: exit code {run.returncode}")
         return run.returncode == STOPPED

@@ -10,7 +10,7 @@ import time
 
 from common.command_line import Failure
 
-from .calls import Broken
+from .calls import Broken, obstacle_to_ranks
 from .failing_calls import Fault, Faults
 from .made_run import Kind, MadeRun, files, reported_in
 from .outcomes import Outcome
@@ -83,7 +83,8 @@ class Storage:
         for kind in (RUN, RUN_DELETE):
             cases.append(TwoWriters(self._run_of(kind), f"{kind.name}: two writers"))
             cases.append(MovedFiles(self._run_of(kind), f"{kind.name}: moved and replaced files"))
-        return cases + [DyingRank(self._run_of(kind), f"{kind.name}: a rank dies") for kind in OF_RANKS]
+        obstacle = obstacle_to_ranks(self._library.parents[1])
+        return cases + [DyingRank(self._run_of(kind), f"{kind.name}: a rank dies", obstacle) for kind in OF_RANKS]
 
     def _run_of(self, kind):
         """Returns a function that returns the run with a seed."""
@@ -270,10 +271,13 @@ class MovedFiles(Stopped):
 class DyingRank(Case):
     """A rank dies at each message that it sends or receives."""
 
-    missing = "mpirun (Debian: openmpi-bin) is not installed, or evodevo was built without MPI"
+    def __init__(self, run_of, name, obstacle):
+        """`obstacle`: why there are no runs of several ranks, or None."""
+        super().__init__(run_of, name)
+        self._obstacle, self.missing = obstacle, obstacle or self.missing
 
     def points(self, run):
-        if not shutil.which("mpirun"):
+        if self._obstacle:
             return []
         return [
             (number, rank, call)

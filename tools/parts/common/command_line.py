@@ -44,6 +44,10 @@ def ended(name, act):
     except Failure as failure:
         print(f"{name}: {failure}", file=sys.stderr)
         return 2
+    except OSError as error:
+        place = f"{error.filename}: " if error.filename else ""
+        print(f"{name}: {place}{error.strerror or error}", file=sys.stderr)
+        return 2
     except Interrupted:
         print(f"{name}: interrupted; the same command goes on", file=sys.stderr)
         return 130

@@ -20,6 +20,8 @@ from .together import run_many, stop
 
 STOPPED = 130  # exit status of a run that was asked to stop; it has finished its generation and can be resumed
 
+NO_ISLANDS = "runs with islands, which are several runs each, are not compared; leave the islands out"
+
 # Without these tables, their defaults apply. Any other table adds something to the experiment, such as an operator.
 TABLES_WITH_DEFAULTS = ("materials", "plugins", "simulation")
 
@@ -82,9 +84,12 @@ def split_values(text):
     return [] if depth or quote else values
 
 
-def refuse_seed(key, option):
+def refuse_key(key, option):
+    """Refuses a key that no comparison may set."""
     if key == "experiment.seed":
         raise Failure(f"{option}: every run has a seed of its own; say how many with --seeds")
+    if key.split(".")[0] == "islands":
+        raise Failure(f"{option}: {NO_ISLANDS}")
 
 
 def parse_sweep(text):
@@ -95,7 +100,7 @@ def parse_sweep(text):
         raise Failure(f"--sweep {text}: expected KEY=VALUE,VALUE,…")
     if len(set(values)) < len(values):
         raise Failure(f"--sweep {text}: a value is there twice")
-    refuse_seed(key, f"--sweep {text}")
+    refuse_key(key, f"--sweep {text}")
     return key, values
 
 
@@ -104,7 +109,7 @@ def parse_setting(text):
     key, equals, value = text.partition("=")
     if not key or not equals:
         raise Failure(f"--set {text}: expected KEY=VALUE")
-    refuse_seed(key, f"--set {text}")
+    refuse_key(key, f"--set {text}")
     return key, value
 
 
@@ -122,11 +127,14 @@ def has_table_of(experiment, key):
     return node is not None
 
 
-def read_toml(file):
+def read_experiment(file):
     try:
-        return tomllib.loads(file.read_text())
+        experiment = tomllib.loads(file.read_text())
     except (OSError, ValueError) as error:
         raise Failure(f"{file}: cannot be read: {error}") from None
+    if "islands" in experiment:
+        raise Failure(f"{file}: islands: {NO_ISLANDS}")
+    return experiment
 
 
 def read_experiments(files):
@@ -134,7 +142,7 @@ def read_experiments(files):
     for file in files:
         if any(file.stem == other.stem for other in experiments):
             raise Failure(f"{file}: another experiment has the name {file.stem} already; rename one of them")
-        experiments[file] = read_toml(file)
+        experiments[file] = read_experiment(file)
     return experiments
 
 
@@ -195,13 +203,22 @@ class Runs:
             made_from = {"experiment": variant.experiment.read_text(), "set": settings}
             record = self._rows / variant.name / "made-from.json"
             if not record.exists():
-                record.parent.mkdir(parents=True, exist_ok=True)
-                record.write_text(json.dumps(made_from, indent=1) + "\n")
-            elif json.loads(record.read_text()) != made_from:
+                rows.store(record, made_from)
+            elif self._read(record) != made_from:
                 raise Failure(
                     f"{record.parent}: its runs were made from another {variant.experiment.name} or with another --set, "
                     f"as {record.name} tells; give another --out, or remove this folder and the runs of that name"
                 )
+
+    @staticmethod
+    def _read(record):
+        try:
+            return json.loads(record.read_text())
+        except (OSError, ValueError) as error:
+            raise Failure(
+                f"{record}: cannot be read: {error}; it tells from which text and settings the runs of that name were "
+                "made; if these have not changed since, remove it"
+            ) from None
 
     def make(self, jobs, launcher, tell):
         """Makes or resumes all runs that are not finished, `jobs` at a time, with the launcher. A run that fails is tried
@@ -281,8 +298,11 @@ class Runs:
         database = run.folder / "run.sqlite"
         if not database.exists():
             return False
-        with contextlib.closing(sqlite3.connect(database)) as connection:
-            return connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0] > 0
+        try:
+            with contextlib.closing(sqlite3.connect(database)) as connection:
+                return connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0] > 0
+        except sqlite3.Error as error:
+            raise Failure(f"{database}: cannot be read: {error}; remove {run.folder}, and its run is made again") from None
 
     @staticmethod
     def arguments(run):

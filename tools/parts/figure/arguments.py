@@ -5,7 +5,8 @@ import pathlib
 
 DESCRIPTION = """\
 Draws a run: its fitness over evaluations, and the motion of its best robot, seen from the side. The robot develops as
-in its life and settles in the experiment's scene for ten seconds. The figure shows the ten seconds after that.
+in its life and settles in the experiment's scene as long as its first fitness lets it. The figure shows the ten seconds
+after that.
 
 Given a file with the output of `tools/evodevo environments FILE.toml... --json`, draws side by side the bodies that
 one genome develops in several scenes. Below each body is its distance from the body in the first scene. Beside them, a

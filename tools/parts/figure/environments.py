@@ -78,8 +78,14 @@ def draw_distances(axes, pairs):
     charts.label_ends(axes, labels)
 
 
+def is_answer(value):
+    return isinstance(value, dict) and {"individual", "scenes", "pairs"} <= value.keys()
+
+
 def figure(file):
     answers = json.loads(file.read_text())
+    if not (isinstance(answers, list) and answers and all(is_answer(each) for each in answers)):
+        raise ValueError(f"{file}: is not the output of tools/evodevo environments --json; give that")
     # each individual begins a new row; it has a panel for each scene, and one for the distances if there are any
     rows = [-(-(len(answer["scenes"]) + bool(answer["pairs"])) // COLUMNS) for answer in answers]
     page, panels = charts.page(COLUMNS * sum(rows), COLUMNS, (2, 1.8), left=0.4, right=0.8)

@@ -9,7 +9,7 @@ import numpy
 from common import charts
 from common.command_line import Failure, ended
 from compare import launchers
-from compare.runs import has_table_of, parse_setting, read_toml
+from compare.runs import has_table_of, parse_setting, read_experiment
 
 from . import arguments, chart, edit, report, tables
 from .effects import effects
@@ -90,7 +90,7 @@ def tune(words, program):
     launchers.refuse_options(given)
     parameters = [parse_range(text) for text in given.over]
     settings = tuple(parse_setting(text) for text in given.set)
-    experiment = read_toml(given.experiment)
+    experiment = read_experiment(given.experiment)
     refuse_keys(experiment, parameters, settings)
     refuse_small_budget(given.budget, parameters)
     refuse_text(given.experiment, parameters)

@@ -15,6 +15,7 @@ from compare.runs import split_values
 REFUSED = {
     "experiment.evaluations": "all runs of a race have the same cost; give it with --set",
     "experiment.spring_evaluations": "all runs of a race have the same cost; give it with --set",
+    "experiment.hours": "all runs of a race have the same cost, which the clock does not tell; leave it out",
     "experiment.seed": "a race gives every configuration the same seeds; leave it out",
     "experiment.verify": "it decides which scores count; give it with --set",
     "experiment.verify_front": "it decides which scores count; give it with --set",

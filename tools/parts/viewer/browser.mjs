@@ -64,6 +64,16 @@ export const launch = async (more = []) =>
 /** How long a page may take to load from its file, ms. On a busy machine without a GPU, loading can take minutes. */
 export const patience = 300_000;
 
+/** Waits for what a page does, of which a browser that draws no frames would never come to the end. Throws if it takes
+ *  longer than `patience`. */
+export async function inTime(answer) {
+  let timer;
+  const late = new Promise((_, reject) => {
+    timer = setTimeout(() => reject(new Error(`the browser has not answered for ${patience / 1000} s`)), patience);
+  });
+  return Promise.race([answer, late]).finally(() => clearTimeout(timer));
+}
+
 /** Opens a page of the viewer and waits until it is ready. `options` are those of Playwright's newPage; the page runs
  *  the function `before` before its own code. */
 export async function opened(browser, file, options, { hash = "", before } = {}) {
@@ -71,16 +81,17 @@ export async function opened(browser, file, options, { hash = "", before } = {})
   if (before) await tab.addInitScript(before);
   tab.on("pageerror", (error) => console.error(`evodevo: the page says: ${error.message}`));
   await tab.goto(pathToFileURL(file) + hash, { timeout: patience });
-  await tab.evaluate(async () => void (await window.evodevo));
+  await inTime(tab.evaluate(async () => void (await window.evodevo)));
   return tab;
 }
 
 /** Draws the page at a time of the life [s]. */
 export async function draw(tab, time) {
-  await tab.evaluate(async (at) => {
+  const drawn = tab.evaluate(async (at) => {
     const { viewer } = await window.evodevo;
     viewer.seek(at);
     viewer.draw();
     await new Promise((done) => requestAnimationFrame(done));
   }, time);
+  await inTime(drawn);
 }

@@ -68,11 +68,20 @@ function showProgress(done, all, started) {
   process.stderr.write(`\r${done} of ${all} frames, ${minutes(left)} left \x1b[K${done === all ? "\n" : ""}`);
 }
 
-async function film(tab, out, { from, to, quiet }) {
-  const life = await tab.evaluate(async () => {
+/** Returns the moments at which the life that the page shows begins and ends and, for a picture, the middle of its last
+ *  part [s]. */
+async function momentsOf(tab) {
+  const moments = await tab.evaluate(async () => {
     const { viewer } = await window.evodevo;
-    return { begin: viewer.begin, end: viewer.end };
+    const last = viewer?.stages[0].life.shots.at(-1);
+    return last && { begin: viewer.begin, end: viewer.end, middle: (last.begin + viewer.end) / 2 };
   });
+  if (!moments) throw new Error("there is nothing to draw: the robot never lived, or the browser has no WebGL");
+  return moments;
+}
+
+async function film(tab, out, { from, to, quiet }) {
+  const life = await momentsOf(tab);
   const begin = from ?? life.begin;
   const end = to ?? life.end;
   expectMoment("from", begin, life.end);
@@ -100,14 +109,14 @@ async function film(tab, out, { from, to, quiet }) {
 }
 
 async function still(tab, out, at) {
-  const { end, middle } = await tab.evaluate(async () => {
-    const { viewer } = await window.evodevo;
-    return { end: viewer.end, middle: (viewer.stages[0].life.shots.at(-1).begin + viewer.end) / 2 };
-  });
-  const moment = at ?? middle;
-  expectMoment("at", moment, end);
-  await draw(tab, moment);
-  await writeFile(out, await ((await tab.$(".gallery")) ?? tab).screenshot());
+  const gallery = await tab.$(".gallery"); // which the page has drawn already
+  if (!gallery) {
+    const { end, middle } = await momentsOf(tab);
+    const moment = at ?? middle;
+    expectMoment("at", moment, end);
+    await draw(tab, moment);
+  }
+  await writeFile(out, await (gallery ?? tab).screenshot());
 }
 
 const text = { type: "string" };

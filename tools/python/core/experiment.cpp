@@ -52,6 +52,13 @@ PythonExperiment::PythonExperiment(const fs::path& path) : path_(path) {
   warn(experiment_);
 }
 
+PythonExperiment::~PythonExperiment() {
+  if (!lacks_threads()) return;
+  // waiting for threads that are not there would never end
+  static_cast<void>(evaluation_.release());
+  static_cast<void>(simulator_.release());
+}
+
 py::object PythonExperiment::settings() const {
   return py::module_::import("tomllib").attr("loads")(experiment_.resolved);
 }
@@ -80,6 +87,10 @@ Genome PythonExperiment::genome(std::uint32_t individual) const {
 }
 
 py::list PythonExperiment::decode(const std::vector<Genome>& genomes) const {
+  if (lacks_threads())
+    throw ConfigError(path_.string() +
+                      ": the Experiment was made before this process was forked, which copies none of its threads; "
+                      "make another one in this process");
   std::vector<Newborn> newborns;
   for (std::size_t i = 0; i < genomes.size(); ++i) {
     if (const std::string fault = genome_fault(genomes[i], experiment_.layout); !fault.empty())

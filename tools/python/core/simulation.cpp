@@ -107,6 +107,7 @@ class Batch {
   }
 
   void run(const Order& order) {
+    if (std::ranges::none_of(lives_, &Life::alive)) return;
     for (std::size_t i = 0; i < lives_.size(); ++i)
       if (lives_[i].alive()) check_pace(order, i);
     const std::vector<SampleTime> times = order.sample_times();

@@ -39,8 +39,11 @@ class Body:
             materials[name] = materials[name].astype(float) if name in materials else 0.0
         rest_lengths = self.rest_lengths
         if rest_lengths is None:
+            if m and not (0 <= springs.min() and springs.max() < n):
+                ends = f"{springs.min()} to {springs.max()}"
+                raise ValueError(f"springs: join masses {ends}; expected indices of {n} masses")
             rest_lengths = np.linalg.norm(positions[springs[:, 1]] - positions[springs[:, 0]], axis=1)
-        velocities = self.velocities
+        velocities, start_energy = self.velocities, self.start_energy
         for name, value in {
             "positions": positions,
             "springs": springs,
@@ -49,7 +52,8 @@ class Body:
             "rest_lengths": _array("rest_lengths", rest_lengths, float, (m,)),
             "material_of": _array("material_of", self.material_of, int, (m,)),
             "velocities": None if velocities is None else _array("velocities", velocities, float, (n, 3)),
-            "time": float(self.time),
+            "time": _number("time", self.time),
+            "start_energy": None if start_energy is None else _number("start_energy", start_energy),
             "stiffness_factors": _array("stiffness_factors", self.stiffness_factors, float, (m,)),
             "mass_materials": _array("mass_materials", self.mass_materials, int, (n,)),
         }.items():
@@ -115,6 +119,14 @@ class Body:
         return self.materials["amplitude"].to_numpy()[self.material_of] != 0
 
 
+def _number(name, value):
+    """Returns a value as a number. Raises ValueError."""
+    try:
+        return float(value)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name}: {error}; expected a number") from None
+
+
 def _array(name, values, kind, shape):
     """Returns values as a new array of a shape, in which None stands for any number of rows; one number stands for a
     whole list. Raises ValueError."""
@@ -128,4 +140,7 @@ def _array(name, values, kind, shape):
         raise ValueError(f"{name}: has the shape {values.shape}; expected [{expected}]")
     if kind is int and not np.issubdtype(values.dtype, np.integer):
         raise ValueError(f"{name}: has numbers of the type {values.dtype}; expected whole numbers, which are indices")
-    return values.astype(kind)
+    try:
+        return values.astype(kind)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name}: {error}; expected numbers") from None

@@ -24,8 +24,16 @@ export function joined(series) {
 export const shown = (_, value, series, index) => (index === null ? "" : short(value));
 const counts = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1e3, 2e3, 5e3, 1e4, 2e4, 5e4, 1e5, 2e5, 5e5, 1e6]; // steps of ticks
 
-/** The least width of an axis, as a part of its larger bound. The ticks of a narrower one would have equal labels. Those
- *  of a far narrower one would be equal after rounding, and uPlot would never come to the last. */
+/** Returns the texts of ticks, with as many digits as tell them apart. */
+function tickTexts(ticks) {
+  const texts = ticks.map(short);
+  for (let digits = 5; new Set(texts).size < texts.length && digits <= 17; ++digits)
+    ticks.forEach((tick, i) => (texts[i] = String(Number(tick.toPrecision(digits)))));
+  return texts;
+}
+
+/** The least width of an axis, as a part of its larger bound. The ticks of a far narrower one would be equal after
+ *  rounding, and uPlot would never come to the last. */
 const narrowest = 1e-3;
 
 /** Returns the range of a scale, which is wide enough for ticks. */
@@ -63,7 +71,8 @@ export const line = (name, stroke, dash) => ({
 });
 
 /** A figure with a chart that fills its width. `describe` returns the data, the series, the names of the axes, options
-*  and, if they depend on the scores chosen, the title and the points that can be opened, {x, y, open}. It is given one
+*  and, if they depend on the scores chosen, the title and the points that can be opened, {x, y, open}; and, if the data
+*  are heights in a stack, the `rows` of the numbers behind them, below a row with their names. It is given one
 *  score of each of the `choices`, {label, scores, first}, which the user can change if there are several scores. */
 export class Chart {
   constructor(name, title, describe, choices = []) {
@@ -93,7 +102,7 @@ export class Chart {
       element("button", {
         type: "button",
         textContent: `Save ${ending.toUpperCase()}`,
-        ariaLabel: `Save ${ending.toUpperCase()}: ${this.title}`,
+        "aria-label": `Save ${ending.toUpperCase()}: ${this.title}`,
         onclick: () => save(fileName(this.caption.textContent, ending), write()),
       });
     this.saving = element(
@@ -107,6 +116,7 @@ export class Chart {
 
   /** Returns the chart's data as rows, the first of which has the names of the columns. */
   #rows() {
+    if (this.rows) return this.rows;
     const names = this.plot.series.map(({ label }) => label);
     return [names, ...this.data[0].map((_, i) => this.data.map((column) => column[i]))];
   }
@@ -119,9 +129,10 @@ export class Chart {
   draw() {
     this.plot?.destroy();
     this.plot = undefined;
-    const { title, data, series, x, y, wholeX, options: { scales, ...options } = {}, points } = this.describe();
+    const { title, data, rows, series, x, y, wholeX, options: { scales, ...options } = {}, points } = this.describe();
     this.caption.textContent = title ?? this.title;
     this.data = data;
+    this.rows = rows;
     const isEmpty = data.slice(1).every((column) => column.every((value) => value === null));
     this.box.replaceChildren(...(isEmpty ? [element("p", { className: "note", textContent: nothing })] : []));
     this.saving.hidden = isEmpty;
@@ -135,7 +146,7 @@ export class Chart {
       font: "12px system-ui",
       labelFont: "12px system-ui",
       labelSize: 18,
-      values: (_, ticks) => ticks.map(short),
+      values: (_, ticks) => tickTexts(ticks),
     });
     this.plot = new uPlot(
       {

@@ -123,9 +123,12 @@ function groups(run, { name, groups: listedGroups, others }, title) {
         value: (_, v, k, i) => (i === null ? "" : short(counts[i])),
       },
     }));
+    const names = all.map(({ text }) => text);
+    const generations = numbersOf(run.generations);
     stacked.reverse(); // a lower area is drawn over a higher one
     return {
-      data: [numbersOf(run.generations), ...stacked.map(({ data }) => data)],
+      data: [generations, ...stacked.map(({ data }) => data)],
+      rows: [["generation", ...names], ...generations.map((g, i) => [g, ...all.map(({ counts }) => counts[i])])],
       series: stacked.map(({ series }) => series),
       x: "generation",
       wholeX: true,
@@ -222,24 +225,30 @@ function statuses(run, title) {
     const lost = lostStatuses(run);
     const lostFrom = (first) => (g) => lost.slice(first).reduce((sum, [name]) => sum + g[name], 0);
     const share = (bad) => of.map((g, i) => (100 * bad(g)) / count[i]);
-    const area = (label, name, number) => ({
+    const area = ({ label, colour, counts }) => ({
       label,
-      stroke: style(name),
-      fill: style(name),
+      stroke: style(colour),
+      fill: style(colour),
       width: 1,
       points: { show: false },
-      value: (_, v, k, i) => (i === null ? "" : number(of[i], count[i])),
+      value: (_, v, k, i) => (i === null ? "" : counts[i]),
     });
+    const ok = of.map((g, i) => Math.max(0, count[i] - lostFrom(0)(g))); // the lost may be older individuals
+    const all = [
+      { label: "ok", colour: "--good", counts: ok },
+      ...lost.map(([name, colour]) => ({ label: name, colour, counts: of.map((g) => g[name]) })),
+    ];
     return {
       data: [
         of.map((g) => g.generation),
         share(() => 0).map(() => 100),
         ...lost.map((_, i) => share(lostFrom(i))),
       ],
-      series: [
-        area("ok", "--good", (g, all) => Math.max(0, all - lostFrom(0)(g))), // the lost may be older individuals
-        ...lost.map(([name, colour]) => area(name, colour, (g) => g[name])),
+      rows: [
+        ["generation", ...all.map(({ label }) => label)],
+        ...of.map((g, i) => [g.generation, ...all.map(({ counts }) => counts[i])]),
       ],
+      series: all.map(area),
       x: "generation",
       wholeX: true,
       y: "% of evaluations",

@@ -30,7 +30,8 @@ export function materialColour(material, all) {
   const stiffest = Math.max(...all.map((m) => m.stiffness));
   const passive = ramp(palette.passive, stiffest > 0 ? material.stiffness / stiffest : 0);
   if (!(material.amplitude > 0)) return passive;
-  const phase = Math.abs(((material.phase / Math.PI + 1) % 2) - 1); // 0 … 1: in phase … in counter-phase
+  const turns = material.phase / (2 * Math.PI);
+  const phase = 1 - Math.abs(2 * (turns - Math.floor(turns)) - 1); // 0 … 1: in phase … in counter-phase
   return mix(passive, ramp(palette.muscles, phase), 0.35 + 0.65 * (material.amplitude / most));
 }
 

@@ -4,6 +4,8 @@ import { views } from "./views.js";
 
 export const speeds = [0.1, 0.25, 0.5, 1, 2, 4];
 
+export const linkLabel = "Copy link";
+
 export class Controls {
   /** Creates the controls of a viewer: those `above` and `below` the stage, and the `last` ones, which stand below what is
    *  said of a picked mass or spring. */
@@ -39,13 +41,13 @@ export class Controls {
       max: "1",
       step: "any",
       value: "0",
-      ariaLabel: "Time",
+      "aria-label": "Time",
       oninput: (e) => viewer.scrub(Number(e.target.value)),
     });
     this.clock = element("output", { className: "clock" });
     this.speedSelect = element(
       "select",
-      { ariaLabel: "Speed", onchange: (e) => viewer.setSpeed(Number(e.target.value)) },
+      { "aria-label": "Speed", onchange: (e) => viewer.setSpeed(Number(e.target.value)) },
       ...speeds.map((s) => element("option", { value: String(s), textContent: `${s}×`, selected: s === 1 })),
     );
     return element("div", { className: "transport" }, this.play, this.scrub, this.clock, this.speedSelect);
@@ -59,7 +61,7 @@ export class Controls {
       max: "0",
       step: "1",
       value: "0",
-      ariaLabel: "Cycle of life",
+      "aria-label": "Cycle of life",
       oninput: (e) => viewer.jump(Number(e.target.value)),
     });
     this.cycleName = element("output", { className: "cycle-name" });
@@ -96,7 +98,7 @@ export class Controls {
   /** Creates the buttons that take something out of the page, or fill the screen. */
   #leaving(viewer) {
     const button = (text, onclick) => element("button", { type: "button", textContent: text, onclick });
-    this.linkButton = button("Copy link", () => viewer.copyLink());
+    this.linkButton = button(linkLabel, () => viewer.copyLink());
     return element(
       "div",
       { className: "leaving" },
@@ -134,7 +136,7 @@ export class Controls {
 
   showPlaying(isPlaying) {
     this.play.textContent = isPlaying ? "❚❚" : "▶";
-    this.play.ariaLabel = isPlaying ? "Pause" : "Play";
+    this.play.setAttribute("aria-label", isPlaying ? "Pause" : "Play");
   }
 }
 

@@ -17,7 +17,7 @@ export const prefersStill = () => matchMedia("(prefers-reduced-motion: reduce)")
 /** Returns a number and the name of what is counted. */
 export const counted = (number, one, several = `${one}s`) => `${number.toLocaleString("en")} ${number === 1 ? one : several}`;
 
-/** Formats a number with four significant digits, without trailing zeros. */
+/** Formats a number with four significant digits, or three and a power of ten, without trailing zeros. */
 export function short(value) {
   if (value === null || value === undefined) return "–";
   if (value !== 0 && (Math.abs(value) >= 1e5 || Math.abs(value) < 1e-3)) {

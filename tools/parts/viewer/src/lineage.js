@@ -98,7 +98,7 @@ export class Lineage {
       type: "button",
       className: isShown ? "born filmed" : "born",
       style: `left:calc(${margin}px + (100% - ${2 * margin}px) * ${x});top:${y}px;--fitness:${colour}`,
-      ariaLabel: this.#textOf(node),
+      "aria-label": this.#textOf(node),
       onfocus: () => this.#explain(node),
       onpointerenter: () => this.#explain(node),
       onclick: () => this.open(node.individual),

@@ -10,9 +10,9 @@ import { migrantTables } from "./islands.js";
 import { Lineage } from "./lineage.js";
 import { NicheMaps } from "./niches.js";
 import { directionOf, hasUnit, listed, own, quantityText } from "./scores.js";
-import { linked } from "./share.js";
+import { linked, shellWord } from "./share.js";
 import { stillOf } from "./still.js";
-import { factTable, robotTable, TestTable, VerificationTable } from "./tables.js";
+import { colourRuns, factTable, robotTable, TestTable, VerificationTable } from "./tables.js";
 import { hasGraphics, Viewer } from "./viewer.js";
 
 const data = JSON.parse(document.getElementById("data").textContent);
@@ -164,16 +164,13 @@ async function showFirst(viewer, isFilm) {
 /** Shows an individual, if the page has its film. */
 function openIndividual({ run, individual }, viewer) {
   const index = robots.findIndex((one) => one.run === run && one.robot.individual === individual);
+  notice.hidden = index >= 0;
   if (index >= 0) return viewer?.open(index);
-  notice(`The page does not hold individual ${individual}. To see it: evodevo report ${run.folder} --individual ${individual}`);
+  const command = `evodevo report ${shellWord(run.folder)} --individual ${individual}`;
+  notice.textContent = `The page does not hold individual ${individual}. To see it: ${command}`;
 }
 
-const notices = element("p", { className: "notice", role: "status", hidden: true });
-
-function notice(text) {
-  notices.textContent = text;
-  notices.hidden = false;
-}
+const notice = element("p", { className: "notice", role: "status", hidden: true });
 
 async function begin() {
   readPalette();
@@ -202,15 +199,20 @@ async function begin() {
     page.charts = new Charts(runs, (point) => openIndividual(point, page.viewer));
     main.append(page.charts.root);
     page.charts.root.prepend(...page.niches.figures);
-    page.charts.root.after(notices);
+    page.charts.root.after(notice);
     page.charts.draw();
     page.portraits = portraits(page.viewer);
     page.pictured = Promise.all(page.portraits.map((one) => one.draw())); // pictures may come later than the page
     main.append(...page.portraits.map(({ root }) => root), robotTable(runs, robots, page.viewer), ...migrantTables(runs));
   }
   main.append(experiments(), element("footer", { textContent: `evodevo ${data.evodevo}` }));
+  addEventListener("hashchange", () => {
+    const link = linked(location.hash, robots);
+    if (link) page.viewer?.restore(link);
+  });
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
     readPalette();
+    colourRuns(document);
     page.viewer?.readTheme();
     page.gallery?.draw();
     page.charts?.draw();

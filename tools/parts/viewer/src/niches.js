@@ -2,6 +2,7 @@
 import { colourBar, css, nicheColour } from "./colours.js";
 import { element, short } from "./elements.js";
 import { directionOf, listed, quantityText, titled } from "./scores.js";
+import { shellWord } from "./share.js";
 
 const intervals = 5; // at most, between the values written at an axis
 const finest = 30; // bins along an axis that leave room for marks in the cells
@@ -26,9 +27,6 @@ function rangeText(axis, k) {
   if (k === bins - 1) return `${name} from ${at(k)} up`;
   return `${name} ${short(border(axis, k))} to ${at(k + 1)}`;
 }
-
-/** Returns a word of a command line for a shell. */
-const shellWord = (text) => (/^[\w./+-]+$/.test(text) ? text : `'${text.replaceAll("'", `'\\''`)}'`);
 
 /** Returns the parts of an axis: its name, and values at the positions of borders. `side` is the edge that positions
  *  are measured from. */

@@ -66,21 +66,20 @@ export function described({ life, materialNames }, { mass, spring }, time) {
 
 /** Returns the stress (N) of a spring in each cycle, as bars with the numbers; nothing if it was not recorded. */
 function stressOf(life, spring, now) {
-  const values = life.shots.map((shot) => {
-    const place = shot.springs.indexOf(spring);
-    return place < 0 ? null : life.stressOf(shot, place);
-  });
+  const places = life.shots.map((shot) => shot.springs.indexOf(spring));
+  const values = places.map((place, i) => (place < 0 ? null : life.stressOf(life.shots[i], place)));
+  const texts = values.map((value, i) => (places[i] < 0 ? "not there" : value === null ? "not known" : `${short(value)} N`));
   const most = Math.max(...values);
   if (!(most > 0)) return [];
   const bar = (value, i) =>
     element("i", {
       style: `height:${value === null ? 0 : Math.max(1, (22 * value) / most)}px`,
       className: i === now ? "now" : "",
-      title: `${life.shots[i].name}: ${value === null ? "not there" : `${short(value)} N`}`,
+      title: `${life.shots[i].name}: ${texts[i]}`,
     });
-  const label = `stress from ${life.shots[0].name} to ${life.shots.at(-1).name}: ${values.map((value) => (value === null ? "not there" : `${short(value)} N`)).join(", ")}`;
+  const label = `stress from ${life.shots[0].name} to ${life.shots.at(-1).name}: ${texts.join(", ")}`;
   return [
-    element("span", { className: "stresses", role: "img", ariaLabel: label }, ...values.map(bar)),
-    element("span", { textContent: `stress of each cycle; ${values[now] === null ? "–" : `${short(values[now])} N`} in this one` }),
+    element("span", { className: "stresses", role: "img", "aria-label": label }, ...values.map(bar)),
+    element("span", { textContent: `stress of each cycle; ${texts[now]} in this one` }),
   ];
 }

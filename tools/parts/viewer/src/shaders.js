@@ -222,14 +222,14 @@ void main() {
 export const moteVertex = /* glsl */ `
 uniform vec3 focus;
 uniform float reach;
-uniform float pixels;
+uniform float pixel; // size of a pixel at distance 1
 out float vFade;
 void main() {
   vec3 at = mod(position * 2.0 * reach - focus + reach, 2.0 * reach) - reach;
   vFade = 1.0 - smoothstep(0.4 * reach, reach, length(at));
   vec4 view = modelViewMatrix * vec4(at + focus, 1.0);
   gl_Position = projectionMatrix * view;
-  gl_PointSize = clamp(0.012 * reach * pixels / -view.z, 1.0, 7.0);
+  gl_PointSize = clamp(0.007 * reach / (pixel * -view.z), 1.0, 7.0);
 }`;
 
 export const moteFragment = /* glsl */ `

@@ -14,6 +14,9 @@ export function csv(rows) {
   return rows.map((row) => row.map((value) => quoted(String(value ?? ""))).join(",") + "\n").join("");
 }
 
+/** Returns a word of a command line for a shell. */
+export const shellWord = (text) => (/^[\w./+-]+$/.test(text) ? text : `'${text.replaceAll("'", `'\\''`)}'`);
+
 /** Returns a name for a file about something, with only those characters that every file system allows. */
 export const fileName = (text, ending) => `${text.replace(/[^\p{L}\p{N}.,_-]+/gu, "-").replace(/^-+|-+$/g, "")}.${ending}`;
 

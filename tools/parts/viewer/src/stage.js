@@ -89,7 +89,8 @@ export class Stage {
     this.#makeUniforms(ground);
     this.#addSky();
     if (scene.floor) this.#addFloor(ground);
-    if (scene.water) this.#addMotes();
+    this.isInWater = scene.water;
+    if (this.isInWater) this.#addMotes();
     this.touch = scene.floor ? life.touch : -Infinity;
     this.#addBody();
     if (scene.floor) this.#addShadow(ground);
@@ -213,13 +214,12 @@ export class Stage {
     let seed = 1; // a random generator with a fixed seed: every page shows the same water
     const random = () => (seed = (seed * 48271) % 2147483647) / 2147483647;
     geometry.setAttribute("position", new THREE.Float32BufferAttribute(Array.from({ length: 3 * 2500 }, random), 3));
-    this.pixels = { value: 1 };
     const motes = new THREE.Points(
       geometry,
       material(
         moteVertex,
         moteFragment,
-        { ...this.world, pixels: this.pixels },
+        { ...this.world, pixel: this.shared.pixel },
         { transparent: true, depthWrite: false },
       ),
     );
@@ -228,9 +228,9 @@ export class Stage {
   }
 
   readTheme() {
-    this.shared.haze.value.copy(colour(this.pixels ? "--water" : "--stage"));
-    this.sky.near.value.copy(colour(this.pixels ? "--water" : "--stage"));
-    this.sky.far.value.copy(colour(this.pixels ? "--water-low" : "--stage-low"));
+    this.shared.haze.value.copy(colour(this.isInWater ? "--water" : "--stage"));
+    this.sky.near.value.copy(colour(this.isInWater ? "--water" : "--stage"));
+    this.sky.far.value.copy(colour(this.isInWater ? "--water-low" : "--stage-low"));
     this.shared.freshColour.value.copy(colour("--fresh"));
     this.touchColour.value.copy(colour("--touch"));
     this.world.line.value.copy(colour("--grid"));
@@ -357,7 +357,6 @@ export class Stage {
     const distance = camera.position.distanceTo(this.target);
     this.shared.hazeRange.value.set(distance - 0.5 * this.size, distance + 1.1 * this.size);
     this.shared.pixel.value = (2 * Math.tan((camera.fov * Math.PI) / 360)) / height;
-    if (this.pixels) this.pixels.value = height;
     renderer.render(this.scene, camera);
   }
 

@@ -8,7 +8,7 @@ const [width, height] = [960, 420]; // pixels
 /** Returns a picture of a robot at the end of its life, seen along y, and a sentence that says why it is still. */
 export async function stillOf({ robot, label, run }) {
   const life = await Life.of(robot, run.direction);
-  const canvas = element("canvas", { width, height, role: "img", ariaLabel: `${label}, at the end of its life` });
+  const canvas = element("canvas", { width, height, role: "img", "aria-label": `${label}, at the end of its life` });
   if (life.shots.length > 0) drawStill(life, canvas.getContext("2d"), 2);
   const why = "This browser shows no 3D graphics (WebGL), so the robot does not move. Charts and tables are complete.";
   return element(

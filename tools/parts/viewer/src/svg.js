@@ -30,7 +30,12 @@ export function chartSvg(plot, title, data) {
     ...ticks(across).map(([split, value]) => text(at(split, "x"), height + 16, value, { "text-anchor": "middle" })),
     text(width / 2, height + 34, across.label, { "text-anchor": "middle" }),
     text(0, 0, up.label, { "text-anchor": "middle", transform: `translate(${round(-x0 + 12)} ${round(height / 2)}) rotate(-90)` }),
-    ...plot.series.slice(1).map((series, i) => shape(plot, series, data[0], data[i + 1])),
+    node("clipPath", { id: "inside" }, node("rect", { width: round(width), height: round(height) })),
+    node(
+      "g",
+      { "clip-path": "url(#inside)" }, // a chart may show a part of its data
+      ...plot.series.slice(1).map((series, i) => shape(plot, series, data[0], data[i + 1])),
+    ),
   );
   const names = plot.series.slice(1).map((series, i) => {
     const colour = colourOf(series.fill, plot) ?? colourOf(series.stroke, plot);

@@ -29,11 +29,18 @@ export function factTable(runs, facts) {
   const rows = labels.map((label) =>
     element("tr", {}, element("th", { textContent: label, scope: "row" }), ...facts.map((of) => ofRun(of, label))),
   );
-  const swatch = (i) => element("i", { className: "run-colour", style: `background:${runColour(i)}` });
-  const heads = runs.map((run, i) =>
-    element("th", {}, swatch(i), run.label, element("span", { textContent: ` ${run.experiment}, seed ${run.seed}` })),
-  );
-  return table("facts-of-runs", "Runs", [element("tr", {}, cell("Fact", "th"), ...heads)], rows);
+  const heads = runs.map(({ label, experiment, seed }) => {
+    const [swatch, of] = [element("i", { className: "run-colour" }), ` ${experiment}, seed ${seed}`];
+    return element("th", {}, swatch, label, element("span", { textContent: of }));
+  });
+  const made = table("facts-of-runs", "Runs", [element("tr", {}, cell("Fact", "th"), ...heads)], rows);
+  colourRuns(made);
+  return made;
+}
+
+/** Gives the runs in a table their colours, which depend on the theme. */
+export function colourRuns(root) {
+  root.querySelectorAll(".run-colour").forEach((swatch, i) => (swatch.style.background = runColour(i)));
 }
 
 /** Lists all robots of the page with their scores. They can be opened if there is a viewer. */

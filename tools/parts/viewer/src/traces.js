@@ -33,11 +33,18 @@ export function forceOf(life, spring) {
   });
 }
 
+const factorError = 2 ** (1 / 32) - 1; // the page holds the stiffness factors of springs in steps of 2^(1/16)
+
 /** How far the force of a spring can be off, N: each position is rounded to the nearest step along each axis, and the
- *  rest length to its own. */
-export function forceError({ robot: { film }, shots }, spring) {
-  const stiffness = shots.map((shot) => film.materials[shot.materials[shot.springs.indexOf(spring)]]?.stiffness ?? 0);
-  return Math.max(...stiffness) * (Math.sqrt(3) * film.step + film.rest_step);
+ *  rest length to its own. A material without a name may be that of a stiffness factor, which is rounded, too. */
+export function forceError({ life, materialNames }, spring) {
+  const { film } = life.robot;
+  const used = life.shots.map((shot) => shot.materials[shot.springs.indexOf(spring)]);
+  const stiffness = used.map((material) => film.materials[material]?.stiffness ?? 0);
+  const rounding = Math.max(...stiffness) * (Math.sqrt(3) * film.step + film.rest_step);
+  if (!used.some((material) => material >= materialNames.length)) return rounding;
+  const [, forces] = forceOf(life, spring);
+  return rounding + factorError * forces.reduce((most, force) => Math.max(most, Math.abs(force ?? 0)), 0);
 }
 
 const force = { name: "force", unit: "N" };
@@ -141,7 +148,7 @@ export class Traces {
   #forceNote() {
     const { stage, spring } = this.pick;
     const { life } = stage;
-    this.error = forceError(life, spring);
+    this.error = forceError(stage, spring);
     const hasDashpot = life.robot.film.materials.some(({ damping }) => damping > 0);
     const what = `Above 0 the spring pulls. At the times that the page holds, to within ${short(this.error)} N`;
     return `${what}${hasDashpot ? ", without the force of dashpots" : ""}.`;

@@ -3,7 +3,7 @@ import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { stateText } from "./caption.js";
 import { developing, readPalette } from "./colours.js";
-import { Controls, keys, speeds } from "./controls.js";
+import { Controls, keys, linkLabel, speeds } from "./controls.js";
 import { element, prefersStill, short } from "./elements.js";
 import { Ground } from "./ground.js";
 import { legend } from "./legend.js";
@@ -47,7 +47,7 @@ export class Viewer {
     this.traces = new Traces();
     this.canvas = element("canvas", {
       tabIndex: 0,
-      ariaLabel: "The robot. Drag to turn it, pinch to come nearer; after a click, the wheel comes nearer, too.",
+      "aria-label": "The robot. Drag to turn it, pinch to come nearer; after a click, the wheel comes nearer, too.",
     });
     this.ruler = element("div", { className: "ruler" }, element("i"), element("span"));
     this.filmClock = element("div", { className: "film-clock" });
@@ -90,9 +90,12 @@ export class Viewer {
 
   async copyLink() {
     history.replaceState(null, "", linkTo(this));
-    let text = "Link copied";
-    await navigator.clipboard?.writeText(location.href).catch(() => (text = "The link is in the address bar"));
-    this.controls.linkButton.textContent = text;
+    const isCopied = await navigator.clipboard?.writeText(location.href).then(
+      () => true,
+      () => false,
+    );
+    this.controls.linkButton.textContent = isCopied ? "Link copied" : "The link is in the address bar";
+    setTimeout(() => (this.controls.linkButton.textContent = linkLabel), 3000);
   }
 
   #shownNames() {
@@ -128,7 +131,7 @@ export class Viewer {
 
   #listen() {
     document.addEventListener("keydown", (event) => {
-      if (event.ctrlKey || event.metaKey || event.altKey) return;
+      if (event.ctrlKey || event.metaKey || event.altKey || !this.isReady) return;
       const action = this.#keys()[event.key];
       if (!action || belongsTo(event.target, event.key)) return;
       event.preventDefault();
@@ -264,7 +267,13 @@ export class Viewer {
     this.dirty = true;
   }
 
+  /** Whether there is a robot to show; the first one takes a moment to unpack. */
+  get isReady() {
+    return this.stages.length > 0;
+  }
+
   seek(time) {
+    if (!this.isReady) return;
     this.time = Math.min(this.end, Math.max(this.begin, time));
     this.controls.scrub.value = String(this.time);
     this.dirty = true;
@@ -283,6 +292,7 @@ export class Viewer {
   }
 
   jump(index) {
+    if (!this.isReady) return;
     const shots = this.#leading().shots;
     if (shots.length === 0) return;
     this.pause();
@@ -290,6 +300,7 @@ export class Viewer {
   }
 
   toggle() {
+    if (!this.isReady) return;
     if (!this.playing && this.time >= this.end) this.seek(this.begin);
     this.playing = !this.playing;
     this.controls.showPlaying(this.playing);
@@ -337,7 +348,7 @@ export class Viewer {
     readPalette();
     this.traces.draw();
     this.stages.forEach((stage) => stage.readTheme());
-    if (this.stages.length > 0) this.#explain();
+    if (this.isReady) this.#explain();
     this.dirty = true;
   }
 
@@ -371,7 +382,7 @@ export class Viewer {
     this.dirty = false;
     if (!this.width) this.#measure();
     const { width, height } = this;
-    if (width === 0 || this.stages.length === 0) return;
+    if (width === 0 || !this.isReady) return;
     const ratio = Math.min(devicePixelRatio, 2);
     const size = this.renderer.getSize(new THREE.Vector2());
     if (size.x !== width || size.y !== height || this.renderer.getPixelRatio() !== ratio) {
@@ -422,6 +433,7 @@ export class Viewer {
   }
 
   #tick(now) {
+    requestAnimationFrame((next) => this.#tick(next)); // first, so that an error does not end all motion
     const passed = Math.min(0.1, (now - (this.last ?? now)) / 1000);
     this.last = now;
     if (this.playing) {
@@ -429,7 +441,6 @@ export class Viewer {
       if (this.time >= this.end) this.pause();
     }
     if (this.dirty) this.draw();
-    requestAnimationFrame((next) => this.#tick(next));
   }
 }
 
