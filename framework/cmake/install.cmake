@@ -3,8 +3,9 @@ include(CMakePackageConfigHelpers)
 set(package_dir lib/cmake/evodevo)
 
 # The installed command finds the libraries that a package brings, and otherwise CUDA's runtime at the same path as in the
-# build.
-set_target_properties(evodevo PROPERTIES
+# build. It is built with that path, because installation would change the file otherwise, and runs would seem to come from
+# another build.
+set_target_properties(evodevo PROPERTIES BUILD_WITH_INSTALL_RPATH ON
   INSTALL_RPATH "\$ORIGIN/../${EVODEVO_PLUGIN_DIR}/libraries" INSTALL_RPATH_USE_LINK_PATH ON)
 if(EVODEVO_CUDA)
   # NVRTC loads another library by its name, for which a RUNPATH of the command would not count, but an RPATH does

@@ -76,7 +76,8 @@ void print_top_speed(const Scene& scene, const std::vector<double>& lengths, dou
   std::cout << "friction keeps up at most " << top_speed_text(scene) << " against the damping";
   if (!lengths.empty()) {
     const double low = fastest / lengths.back(), high = fastest / lengths.front();
-    std::cout << ": " << range_text(low, high) << " body lengths per second, ";
+    const bool is_slope = top_speed(scene, -1) != top_speed(scene, 1);
+    std::cout << (is_slope ? ": downhill " : ": ") << range_text(low, high) << " body lengths per second, ";
     if (window > 0)
       std::cout << "or " << range_text(low * window, high * window) << " in the window of " << short_number(window)
                 << " s, ";

@@ -251,7 +251,7 @@ Command life_command() {
            "removed after each cycle, and because of which measured values. With --all it prints every single edit. "
            "Masses keep their numbers; a spring is named by the two masses that it joins."},
       .examples = {"life runs/quickstart-1", "life runs/quickstart-1 --all",
-                   "life runs/quickstart-1 --individual 531 --json"},
+                   "life runs/quickstart-1 --individual 295 --json"},
       .options = options,
       .function = life};
 }

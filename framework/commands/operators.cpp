@@ -92,6 +92,11 @@ Registry registry_for(const Given& given) {
 
 int operators(const Given& given) {
   const std::string kind = given_kind(given);
+  for (const char* whole : {"failed", "markdown"})
+    if (given.contains(whole) && !kind.empty())
+      throw UsageError("--kind " + kind + ": --" + whole + " is about all kinds; leave one of them out");
+  if (given.contains("markdown") && (given.contains("json") || given.contains("failed")))
+    throw UsageError("--markdown: is a page of its own; leave it out, or --json and --failed");
   const Registry registry = registry_for(given);
   if (given.contains("failed")) {
     print_failed(registry, given.contains("json"));

@@ -244,7 +244,7 @@ Command film_command() {
            "time."},
       .examples = {"film runs/quickstart-1 --out champion.mp4",
                    "film runs/quickstart-1 --from 14 --to 20 --out walk.webp",
-                   "film runs/quickstart-1 --individual 531 --at 14 --out another.png"},
+                   "film runs/quickstart-1 --individual 295 --at 14 --out another.png"},
       .options = options,
       .function = film};
 }

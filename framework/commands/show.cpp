@@ -347,7 +347,7 @@ Command show_command() {
            "run may still be in progress. With --individual, it prints one individual: its scores, what the selection "
            "operator has noted about it, and its ancestors. Of a run with islands, it prints a line for each; to see "
            "more of one, give its folder."},
-      .examples = {"show runs/quickstart-1", "show runs/quickstart-1 --individual 531",
+      .examples = {"show runs/quickstart-1", "show runs/quickstart-1 --individual 295",
                    "show runs/quickstart-1 --json"},
       .options = options,
       .function = show};

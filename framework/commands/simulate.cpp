@@ -100,10 +100,10 @@ Life life_of(const std::string& file, const Evaluation& evaluation) {
                : "; leave out \"time\", \"start_energy\" and the velocities, so that the body is born on the ground"));
 }
 
-void print_end(const Life& life, Vec3 start, double length) {
+void print_end(const Life& life, double duration, Vec3 start, double length) {
   const State& state = life.living.state;
   const Vec3 moved = centre_of_mass(life.living.body, state.position) - start;
-  std::cout << "after " << to_text(state.time) << " s the centre of mass has moved by " << vector_text(moved) << " m";
+  std::cout << "after " << short_number(duration) << " s the centre of mass has moved by " << vector_text(moved) << " m";
   if (length > 0)
     std::cout << ", " << short_number(norm({moved.x, moved.y, 0}) / length) << " body lengths along the ground";
   std::cout << '\n';
@@ -136,6 +136,7 @@ int simulate(const Given& given) {
 
   const Vec3 start = centre_of_mass(life.living.body, life.living.state.position);
   const double length = bounding_box(life.living.state.position).longest_side();
+  const double begin = life.living.state.time;
   const auto steps_of_frame = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::round(frame_time / pace.dt)));
   const Motion motion = timed("simulating " + to_text(duration) + " s", [&] {
     return go_on(evaluation, *simulator, life, duration, steps_of_frame, trajectory ? &*trajectory : nullptr);
@@ -150,7 +151,7 @@ int simulate(const Given& given) {
               << " s: " << life.result.reason << '\n';
     return 1;
   }
-  print_end(life, start, length);
+  print_end(life, life.living.state.time - begin, start, length);
   remarks() << "speed: " << short_number(static_cast<double>(motion.spring_evaluations) / motion.seconds)
             << " spring evaluations/s\n";
   return 0;

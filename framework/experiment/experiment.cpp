@@ -53,7 +53,8 @@ Experiment compose(const toml::table& root, const ExperimentSource& source) {
   if (!experiment.start.empty())  // absolute in the record of a run, so that it means the same elsewhere
     experiment.start = (fs::absolute(source.file).parent_path() / experiment.start).lexically_normal().string();
   experiment.name = printable(fs::path(source.file).stem().string());
-  experiment.device_location = top.location("simulation");
+  const toml::node_view device = root.at_path("simulation.device");
+  experiment.device_location = device ? location_of(device.node()->source()) : top.location("simulation");
   experiment.gpus = source.gpus;
   experiment.context = encoding_context(experiment);
 

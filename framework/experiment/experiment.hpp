@@ -76,7 +76,7 @@ struct Experiment : Settings {
   std::vector<OperatorUse> uses;
   std::vector<std::filesystem::path> plugin_folders;  ///< search path of operators, except the program's own folder
   std::vector<std::string> warnings;                  ///< warnings for the user
-  std::string device_location;                        ///< place of [simulation] in the file, for messages
+  std::string device_location;                        ///< place of simulation.device or [simulation], for messages
   std::vector<int>
       gpus;              ///< numbers of the GPUs to use; empty: all. Results do not depend on it, and no run records it
   std::string resolved;  ///< TOML that reads back as the same experiment, with every default written out

@@ -30,8 +30,8 @@ struct Detail {
 constexpr Detail details[] = {{8192, 255, 4}, {2048, 63, 16}, {1024, 15, std::numeric_limits<std::size_t>::max()}};
 
 /// Assigns numbers to springs by the masses that they join and, if springs act in parallel, by their order among those
-/// of the same two masses. A spring keeps its number throughout the film, unless one that is parallel to it and before it
-/// is removed.
+/// of the same two masses. A spring keeps its number throughout the film, unless one that is parallel to it and before
+/// it is removed.
 class SpringNumbers {
  public:
   /// The springs of a shot.
@@ -79,7 +79,7 @@ class SpringNumbers {
   std::vector<Present> shots_;
 };
 
-double on_grid(double value, double step) { return step * static_cast<double>(std::llround(value / step)); }
+double on_grid(double value, double step) { return step * static_cast<double>(whole_steps(value, step)); }
 
 /// Collects the errors of positions that are interpolated linearly between the kept frames, over all filmed frames.
 class ErrorSum {

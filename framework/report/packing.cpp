@@ -72,6 +72,11 @@ std::string ValuePacking::next(std::span<const std::uint32_t> numbers, std::span
   return packed(differences);
 }
 
+std::int64_t whole_steps(double value, double step) {
+  constexpr double most = 1 << 29;
+  return std::llround(std::clamp(value / step, -most, most));
+}
+
 std::string PlacePacking::next(std::span<const Frame* const> frames, std::span<const std::uint32_t> numbers) {
   std::vector<std::int64_t> differences, last, before_last;
   for (const Frame* frame : frames) {
@@ -90,7 +95,7 @@ std::string PlacePacking::next(std::span<const Frame* const> frames, std::span<c
 std::vector<std::int64_t> PlacePacking::positions(const Frame& frame) const {
   std::vector<std::int64_t> positions;
   for (std::size_t axis = 0; axis < 3; ++axis)
-    for (const SeenPlace& position : frame.positions) positions.push_back(std::llround(position[axis] / step_));
+    for (const SeenPlace& position : frame.positions) positions.push_back(whole_steps(position[axis], step_));
   return positions;
 }
 

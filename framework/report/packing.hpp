@@ -36,6 +36,10 @@ class ValuePacking {
   std::vector<std::int64_t> last_;
 };
 
+/// Returns the multiple of a step that is nearest to a finite value, in steps. What is farther than 2^29 steps away, as
+/// after a divergence, is taken to be there, so that the page can add and subtract places in 32 bits.
+std::int64_t whole_steps(double value, double step);
+
 /// Packs the positions of masses, shot by shot. A shot is packed frame by frame; a frame is packed as all x, then all
 /// y, then all z.
 class PlacePacking {

@@ -1,12 +1,15 @@
 // The fitness values in the study equal those that evolution uses.
 #include "fitnesses.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "life/evaluation.hpp"
 #include "support/experiments.hpp"
+#include "support/messages.hpp"
+#include "support/scratch.hpp"
 
 namespace evodevo::tools::accuracy {
 namespace {
@@ -38,6 +41,27 @@ TEST(Fitnesses, AreThoseOfAnEvaluation) {
   EXPECT_EQ(measured.values, expected);
   EXPECT_EQ(measured.diverged, 0);
   EXPECT_GT(measured.cost, 0);
+}
+
+TEST(Fitnesses, OfExperimentsThatAskForMoreAreRefused) {
+  const evodevo::testing::Scratch scratch;
+  const auto complaint = [&](const std::string& fitness, std::vector<Override> overrides = {}) -> std::string {
+    std::string text = evodevo::testing::small_experiment;
+    const std::string distance = "name = \"distance\"";
+    text.replace(text.find(distance), distance.size(), fitness);
+    try {
+      measurable_experiment(scratch.write("robots.toml", text), std::move(overrides));
+      return "";
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+  };
+  EXPECT_EQ(complaint("name = \"distance\""), "");
+  for (const char* other : {"name = \"straightness\"\nrate = 100", "name = \"jump\"\nrate = 100",
+                            "name = \"efficiency\"", "name = \"descriptor\"\nwhat = \"masses\""})
+    EXPECT_THAT(complaint(other), evodevo::testing::naming("robots.toml", "fitness.0", "\"distance\""));
+  EXPECT_THAT(complaint("name = \"distance\"", {{"encoding.pointz", "48", ""}}),
+              evodevo::testing::naming("robots.toml with encoding.pointz = 48: ", "encoding.pointz"));
 }
 
 TEST(Fitnesses, OfWhatDivergesAreNoNumbers) {

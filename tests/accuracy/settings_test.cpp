@@ -28,6 +28,8 @@ TEST(AccuracySettings, RefuseWhatCannotBeStudied) {
               AllOf(HasSubstr("\"order\""), HasSubstr("work-precision, beam")));
   EXPECT_THAT(complaint({"charts", "--device", "gpu"}), AllOf(HasSubstr("\"gpu\""), HasSubstr("cpu, cuda")));
   EXPECT_THAT(complaint({"charts", "--robots", "3"}), HasSubstr("at least 20"));
+  EXPECT_THAT(complaint({"charts", "--robots", "-1"}), HasSubstr("--robots -1"));
+  EXPECT_THAT(complaint({"charts", "--threads=-2"}), HasSubstr("--threads -2"));
 }
 
 TEST(AccuracySettings, AreDescribedByTheHelp) {

@@ -19,6 +19,17 @@ TEST(Report, IsATableWithItsConditionsAndItsCommand) {
             "| a name | rate |\n|---|---|\n| first | 1.23e+08 |\n| second | 0.9877 |\n");
 }
 
+TEST(Report, IsToldFromOtherJson) {
+  Report report = {{"study", "x"}, {"command", "y"}, {"rows", {{{"rate", 1}}}}};
+  EXPECT_TRUE(is_report(report));
+  for (const char* rows : {"[]", "[1]", "[{}]", "null", "{}"}) {
+    report["rows"] = Report::parse(rows);
+    EXPECT_FALSE(is_report(report)) << rows;
+  }
+  for (const char* other : {"{\"a\": 1}", "5", "[]", "{\"study\": 1, \"command\": \"y\", \"rows\": [{\"a\": 1}]}"})
+    EXPECT_FALSE(is_report(Report::parse(other))) << other;
+}
+
 TEST(Bodies, CubeIsThePapers) {
   // for 10 x 10 x 10 voxels: a mass at each corner; springs along edges, face diagonals and body diagonals
   const Body cube = body_named("cube10", 0).body;

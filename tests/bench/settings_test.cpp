@@ -29,6 +29,7 @@ TEST(Settings, RefuseWhatCannotBeMeasured) {
   EXPECT_THAT(complaint({"--study", "baselines"}), HasSubstr("--device cuda"));
   EXPECT_THAT(complaint({"--study", "features", "--robots", "some.toml"}), HasSubstr("--robots"));
   EXPECT_THAT(complaint({"--bodies", "0"}), HasSubstr("bodies from 1 to 65535"));
+  EXPECT_THAT(complaint({"--steps=-1"}), HasSubstr("--steps -1"));
   EXPECT_THAT(complaint({"--method", "rk5"}), AllOf(HasSubstr("\"rk5\""), HasSubstr("paper-euler, ")));
   EXPECT_THAT(complaint({"--study", "materials"}), HasSubstr("add --device cuda"));
 #ifdef EVODEVO_CUDA

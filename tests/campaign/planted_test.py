@@ -2,6 +2,7 @@
 
 import collections
 import pathlib
+import shutil
 import subprocess
 import tempfile
 import textwrap
@@ -12,7 +13,10 @@ from campaign.planted import Planted, drawn
 from campaign.workshop import APART, Group, Workshop
 from common.command_line import Failure
 
-CAN_TRY = subprocess.run([*APART, "true"], capture_output=True).returncode == 0
+CAN_TRY = (
+    all(map(shutil.which, ("git", "setpriv", "unshare")))
+    and subprocess.run([*APART, "true"], capture_output=True).returncode == 0
+)
 PROJECT = {
     "CMakeLists.txt": """
         cmake_minimum_required(VERSION 3.25)

@@ -464,6 +464,9 @@ TEST_F(Command, UsageErrors) {
               testing::naming("EXPERIMENT.toml", "missing", "usage: evodevo run EXPERIMENT.toml"));
   EXPECT_THAT(evodevo({"conform"}).output, testing::naming("LIBRARY", "missing", "usage: evodevo conform LIBRARY"));
   EXPECT_EQ(evodevo({"run", file_, "--sead", "3"}).exit_code, 2);
+  EXPECT_THAT(evodevo({"run", file_, "--sead", "3"}).output, testing::naming("--sead", "did you mean \"--seed\"?"));
+  EXPECT_THAT(evodevo({"check", file_, "--set", "simulation.dt=0.0003"}).output,
+              testing::naming("development.cycle_time", "the nearest one is 0.0501 s", "simulation.dt"));
   EXPECT_THAT(evodevo({"run", file_, "--set", "seed"}).output, AllOf(HasSubstr("--set seed"), HasSubstr("key=value")));
   EXPECT_THAT(evodevo({"check", file_}).output, ::testing::EndsWith(file_ + ": ok\n"));
   EXPECT_EQ(evodevo({"run", "--help"}).exit_code, 0);
@@ -482,7 +485,7 @@ TEST_F(Command, CheckTellsTheTopSpeed) {
               testing::naming("top speed: ", "0.6131 m/s", "0.6131 to 1.226 body lengths",
                               " 0.1226 to 0.2453 in the window of 0.2 s", " 0.5 to 1 m long"));
   EXPECT_THAT(told({"scene.damping.rate=8", "scene.gravity.slope=-10"}),
-              testing::naming("top speed: ", "0.8167 m/s downhill", "0.3909 m/s uphill"));
+              testing::naming("top speed: ", "0.8167 m/s downhill", "0.3909 m/s uphill", ": downhill 0.8167 to "));
   EXPECT_THAT(told({"scene.gravity.slope=30"}), testing::naming("0.4554 m/s downhill", "nothing uphill"));
   EXPECT_THAT(told({"scene.damping.rate=0"}), testing::naming("top speed: ", "no damping", "muscles"));
   EXPECT_EQ(told({"scene.floor.roughness=0.001"}), file_ + ": ok\n");
@@ -540,6 +543,12 @@ TEST_F(Command, OperatorsDescribeThemselves) {
               AllOf(HasSubstr("\"spring-turnove\""), HasSubstr("did you mean \"spring-turnover\"?")));
   EXPECT_THAT(evodevo({"operators", "--kind", "devos"}).output,
               AllOf(HasSubstr("--kind devos: "), HasSubstr("did you mean \"devo\"?")));
+  for (const std::string whole : {"--markdown", "--failed"}) {
+    const Finished refused = evodevo({"operators", whole, "--kind", "devo"});
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.output, testing::naming("--kind devo", whole, "leave one"));
+  }
+  EXPECT_EQ(evodevo({"operators", "--markdown", "--json"}).exit_code, 2);
 }
 
 }  // namespace

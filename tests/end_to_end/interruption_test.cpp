@@ -210,6 +210,7 @@ TEST_F(Interruption, AYokedRunGoesOnTheSame) {
   for (int line = 0; line < 3; ++line) process.read_line();
   process.send(SIGKILL);
   process.wait();
+  EXPECT_LT(Archive::read(scratch_ / "killed").generations().size(), 13u) << "it was done before it could be killed";
   const testing::Finished finished = testing::run(resume_command("killed"));
   ASSERT_EQ(finished.exit_code, 0) << finished.output;
   testing::expect_same_runs(Archive::read(scratch_ / "straight"), Archive::read(scratch_ / "killed"));
@@ -259,7 +260,8 @@ TEST_P(EndingSignal, EndsARunAfterItsGenerationAndTheSameCommandFinishesIt) {
   testing::expect_same_runs(Archive::read(scratch_ / "straight"), Archive::read(scratch_ / "stopped"));
   const testing::Finished again = testing::run(restartable_command("stopped"));
   EXPECT_EQ(again.exit_code, 0);
-  EXPECT_THAT(again.output, testing::naming((scratch_ / "stopped").string(), "complete", "75 evaluations"));
+  EXPECT_THAT(again.output, testing::naming((scratch_ / "stopped").string(), "complete", "75 evaluations",
+                                            "--set experiment.start=" + (scratch_ / "stopped").string()));
 }
 
 INSTANTIATE_TEST_SUITE_P(Signals, EndingSignal, ::testing::Values(SIGINT, SIGTERM, SIGUSR1),

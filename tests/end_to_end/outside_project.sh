@@ -5,6 +5,7 @@
 #
 #   outside_project.sh BUILD_FOLDER
 set -euo pipefail
+command -v python3 >/dev/null || { echo "skipped: there is no python3"; exit 77; }
 build=$(realpath "$1")
 source=$(dirname "$(realpath "${BASH_SOURCE[0]}")")/outside_project
 scratch=$(mktemp -d)
@@ -26,6 +27,7 @@ grep -nP "$forbidden" "$source"/*.cpp && fail "operators need none of these"
 [ $? = 1 ] || fail "grep has no -P"
 
 cmake --install "$build" --prefix "$scratch/package" >/dev/null
+cmp "$build/bin/evodevo" "$scratch/package/bin/evodevo" || fail "runs of the installed command would seem to be of another build"
 PATH=$scratch/package/bin:$PATH
 cp -r "$source" "$scratch/project"
 cd "$scratch/project"

@@ -83,6 +83,13 @@ TEST_F(RunMany, RunsAreTheSameAsAlone) {
   EXPECT_THAT(log_of("plain-2"), testing::naming("evaluations 24/24", "best: individual"));
 }
 
+TEST_F(RunMany, ARunHasTheThreadsThatItsArgumentsAskFor) {
+  const Finished finished = testing::run(
+      command({arguments("set", {"--set", "simulation.threads=3"}), arguments("given", {"--threads", "3"})}, 2));
+  ASSERT_EQ(finished.exit_code, 0) << finished.output;
+  for (const char* name : {"set", "given"}) EXPECT_THAT(log_of(name), testing::naming("3 threads")) << name;
+}
+
 TEST_F(RunMany, ARunThatFailsDoesNotEndOthers) {
   const Finished finished = testing::run(command(
       {arguments("wrong", {"--set", "experiment.population=none"}), arguments("right"), arguments("wrong/of/")}, 1));
@@ -116,6 +123,7 @@ TEST_F(RunMany, WrongLinesAreRefusedBeforeAnyRunBegins) {
   expect_refused("run small.toml", "JSON array", "--seed");
   expect_refused("[\"small.toml\", 3]", "JSON array");
   expect_refused(Json(Words{file_}).dump(), "--out", "folder");
+  expect_refused(Json(Words{file_, "--out", ""}).dump(), "--out", "folder");
   expect_refused(Json(arguments("second", {"--until", "2h"})).dump(), "--until", "leave it out");
   expect_refused(Json(arguments("second", {"--sede", "2"})).dump(), "--sede");
   expect_refused(Json(arguments("second/../first/")).dump(), "--out", "runs.jsonl:1", "folder of its own");

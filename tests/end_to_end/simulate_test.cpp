@@ -100,6 +100,7 @@ class Simulate : public ::testing::Test {
   std::pair<Seen, Seen> simulated(const std::string& body) {
     const Finished finished = evodevo({"simulate", body, file_, "--duration", "0.0098", "--trajectory", csv_});
     EXPECT_EQ(finished.exit_code, 0) << finished.output;
+    EXPECT_THAT(finished.output, HasSubstr("\nafter 0.0098 s the centre")) << "however old it was before";
     const std::vector<Seen> frames = trajectory_in(csv_);
     EXPECT_EQ(frames.size(), 2u);
     return {frames.front(), frames.back()};

@@ -86,13 +86,16 @@ TEST_F(Start, IfThereIsNotRoomForAllTheBestCome) {
 }
 
 TEST_F(Start, ARunThatIsInterruptedAfterwardsNeedsTheOtherRunNoMore) {
-  ASSERT_EQ(run("straight", {start_, "experiment.evaluations=33"}).exit_code, 0);
+  const std::string evaluations = "experiment.evaluations=600";
+  ASSERT_EQ(run("straight", {start_, evaluations}).exit_code, 0);
   testing::Process process({EVODEVO_PROGRAM, "run", file_, "--no-report", "--out", (scratch_ / "killed").string(),
-                            "--set", start_, "--set", "experiment.evaluations=33"});
+                            "--set", start_, "--set", evaluations});
   for (int line = 0; line < 3; ++line) process.read_line();  // its folder, and two generations
   process.send(SIGKILL);
   process.wait();
-  ASSERT_GE(Archive::read(scratch_ / "killed").generations().size(), 1u);
+  const std::size_t done = Archive::read(scratch_ / "killed").generations().size();
+  ASSERT_GE(done, 1u);
+  ASSERT_LT(done, Archive::read(scratch_ / "straight").generations().size()) << "it was done before it could be killed";
   std::filesystem::remove_all(scratch_ / "home");
   const Finished resumed = testing::run({EVODEVO_PROGRAM, "resume", "--no-report", (scratch_ / "killed").string()});
   ASSERT_EQ(resumed.exit_code, 0) << resumed.output;

@@ -206,8 +206,9 @@ TEST(Loader, AFolderWithoutPermissionIsNamed) {
   const testing::Scratch scratch;
   fs::create_directory(scratch / "closed");
   fs::permissions(scratch / "closed", fs::perms::none);
+  fs::permissions(scratch / ".", fs::perms(0755));  // so that the other user gets that far
   const bool root = geteuid() == 0;
-  ASSERT_TRUE(!root || seteuid(65534) == 0);
+  if (root && seteuid(65534) != 0) GTEST_SKIP() << "root cannot switch to another user";
   const Registry registry({scratch / "closed"});
   ASSERT_TRUE(!root || seteuid(0) == 0);
   ASSERT_EQ(registry.failed().size(), 1u);

@@ -83,6 +83,14 @@ TEST(Packing, TellsPlacesByHowMassesMoved) {
   EXPECT_THAT(unpacked(positions.next(again, std::vector<std::uint32_t>{1, 2})), ElementsAre(0, 2, 0, 0, 0, 0));
 }
 
+TEST(Packing, PlacesOutOfReachAreAtItsEnd) {
+  EXPECT_EQ(whole_steps(-3.3, 0.5), -7);
+  for (const double far : {1e6, 1e34, 1e300}) {
+    EXPECT_EQ(whole_steps(far, 1e-4), 1 << 29);
+    EXPECT_EQ(whole_steps(-far, 1e-4), -(1 << 29));
+  }
+}
+
 /// A shot of a body with masses at the given x positions, with the given numbers, joined in the given pairs.
 Shot shot_of(const std::vector<double>& positions, std::vector<std::uint32_t> numbers,
              const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) {

@@ -17,8 +17,9 @@ struct Batch {
 };
 
 /// Returns the batch of a number. Successive numbers have all methods in both precisions, with materials from a table
-/// or from codes. Every second batch is tame. The bodies of the others have masses, stiffnesses, sizes, speeds, times
-/// and steps of any scale, masses at the same place, masses with hundreds of springs, and thousands of materials.
+/// or from codes. Twelve tame batches and twelve others come in turn. The bodies of the others have masses,
+/// stiffnesses, sizes, speeds, times and steps of any scale, masses at the same place, masses with hundreds of springs,
+/// and thousands of materials.
 Batch batch_of(std::uint64_t number, std::size_t bodies);
 
 }  // namespace evodevo::test

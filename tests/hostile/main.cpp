@@ -5,6 +5,7 @@
 //
 //   hostile_bodies cpu|cuda FIRST_BATCH BATCHES BODIES
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <exception>
 #include <iostream>
@@ -129,12 +130,23 @@ class Trial {
   std::vector<std::string> found_;
 };
 
+/// Returns the number that a word is. Throws std::invalid_argument if it is none.
+std::uint64_t number_in(const std::string& word) {
+  std::uint64_t number = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+  if (error != std::errc() || end != word.data() + word.size())
+    throw std::invalid_argument(word + ": expected a whole number of at least 0");
+  return number;
+}
+
 }  // namespace
 }  // namespace evodevo::test
 
 int main(int argc, char** argv) try {
+  using evodevo::test::number_in;
   if (argc != 5) throw std::invalid_argument("usage: hostile_bodies cpu|cuda FIRST_BATCH BATCHES BODIES");
-  const std::uint64_t first = std::stoull(argv[2]), batches = std::stoull(argv[3]), bodies = std::stoull(argv[4]);
+  const std::uint64_t first = number_in(argv[2]), batches = number_in(argv[3]), bodies = number_in(argv[4]);
+  if (batches == 0 || bodies == 0) throw std::invalid_argument("BATCHES and BODIES: expected at least 1");
   for (std::uint64_t number = first; number < first + batches; ++number) {
     nlohmann::json result = evodevo::test::Trial(argv[1], number, bodies).result();
     result["batch"] = number;

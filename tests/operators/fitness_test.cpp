@@ -196,8 +196,17 @@ TEST(Descriptor, HasARangeAndTheRoleOfOne) {
 
 TEST(Descriptor, IsTheMeanOverTheWindow) {
   const auto fitness = [](const std::string& what) { return make<Fitness>("descriptor", "what = '" + what + "'"); };
-  const auto height = fitness("height");
-  EXPECT_DOUBLE_EQ(height->score(Path(*height, {{0, 0, 1}, {0, 0, 2}}).seen).at(0), 1) << "the boxes are cubes";
+  const auto mean = [&](const std::string& what, const Vec3& first, const Vec3& second, const Vec3& third) {
+    const auto descriptor = fitness(what);
+    Path path(*descriptor, {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}});
+    path.sample(0).box = {{1, 1, 1}, Vec3{1, 1, 1} + first};
+    path.sample(1).box = {{1, 1, 1}, Vec3{1, 1, 1} + second};
+    path.sample(2).box = {{1, 1, 1}, Vec3{1, 1, 1} + third};
+    return descriptor->score(path.seen).at(0);
+  };
+  EXPECT_DOUBLE_EQ(mean("height", {3, 2, 9}, {3, 2, 1}, {3, 2, 2}), 1.5);
+  EXPECT_DOUBLE_EQ(mean("spread", {9, 9, 9}, {3, 2, 8}, {4, 2, 7}), 3.5) << "the longer horizontal side";
+  EXPECT_DOUBLE_EQ(mean("spread", {9, 9, 9}, {3, 2, 8}, {1, 4, 7}), 3.5);
   const auto contact = fitness("contact");
   Path path(*contact, {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}});
   path.sample(1).contact_time = 0.02;  // 0.1 s lie between two samples

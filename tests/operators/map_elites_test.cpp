@@ -98,6 +98,8 @@ TEST(MapElites, TheBestOfTheCellWithTheNearestCentreSurvives) {
   for (const auto& [cell, row] : best) expected.insert(row);
   EXPECT_EQ(std::set(first.rows.begin(), first.rows.end()), expected);
 
+  const auto other = make<Selection>("map-elites", "cells = \"centroidal\"\ncount = 12");
+  EXPECT_EQ(table.survive(*other, 100, 2).memory, first.memory) << "the cells are the same in all runs";
   table.memory = first.memory;
   const Survival second = table.survive(*selection, 100, 2);
   EXPECT_EQ(second.memory, first.memory) << "the cells stay";

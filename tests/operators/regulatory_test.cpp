@@ -30,12 +30,14 @@ enum : int {
   z
 };
 
-/// A gene that makes `product` by tanh(weight * input + bias).
+/// A gene that makes `product` by tanh(weight * input + weight_b * input_b + bias).
 struct TestGene {
   int product;
   float bias;
   int input = divide;
   float weight = 0;
+  int input_b = divide;
+  float weight_b = 0;
 };
 
 class Regulatory : public ::testing::Test {
@@ -47,7 +49,8 @@ class Regulatory : public ::testing::Test {
     Genome genome(0);
     for (const TestGene& gene : genes) {
       const auto number = [](int value) { return static_cast<float>(value); };
-      for (const float value : {number(gene.product), number(gene.input), gene.weight, number(divide), 0.0F, gene.bias})
+      for (const float value :
+           {number(gene.product), number(gene.input), gene.weight, number(gene.input_b), gene.weight_b, gene.bias})
         genome.genes.push_back(value);
     }
     return encoding->decode(genome, layout, context());
@@ -159,6 +162,23 @@ TEST_F(Regulatory, GenesOfOneProductAddUp) {
   const Blueprint blueprint = embryo({{divide, 1}, {signal_, 0.5F}, {signal_, 0.25F}, {signal_, 0, time_gone, 2}});
   for (const double value : blueprint.mass_memory.at("signal"))
     EXPECT_NEAR(value, std::tanh((0.75 + 2) / std::sqrt(3.0)), 1e-12);
+}
+
+TEST_F(Regulatory, AGeneHasTwoInputs) {
+  const Blueprint blueprint = embryo({{divide, 1}, {signal_, 0.125F, room, 0.25F, time_gone, 0.5F}}, "steps = 1");
+  ASSERT_THAT(blueprint.body.masses, SizeIs(2));
+  for (const double value : blueprint.mass_memory.at("signal"))
+    EXPECT_NEAR(value, std::tanh(0.25 * 11 / 12 + 0.5 + 0.125), 1e-12);
+}
+
+TEST_F(Regulatory, GenomesHaveRoomForAsManyGenesAsAsked) {
+  const auto most = [](const std::string& toml) {
+    return make<Encoding>("regulatory", toml)->layout(context()).types.at(0).most;
+  };
+  EXPECT_EQ(most(""), 128u);
+  EXPECT_EQ(most("genes = 7\nmost_genes = 7"), 7u);
+  EXPECT_THAT([&] { most("genes = 8\nmost_genes = 7"); },
+              testing::ThrowsMessage<InputError>(testing::HasSubstr("most_genes")));
 }
 
 TEST_F(Regulatory, RoomIsTheFractionOfFreeSites) {

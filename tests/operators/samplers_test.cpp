@@ -111,6 +111,20 @@ TEST(CmaEsSelection, LearnsFromNewbornsAlone) {
   EXPECT_NE(table.survive(*selection, 5).memory, memory);
 }
 
+TEST(CmaEsSelection, TheFirstStepIsAShareOfTheRange) {
+  const auto selection = make<Selection>("cma-es", "step = 0.02");
+  Table table;
+  table.layout.add_block(1, {-5, 5});
+  table.layout.add_block(1, {0, 100});
+  double squares[2] = {};
+  for (const Child& child : table.children(*selection, 400)) {
+    squares[0] += std::pow(child.genome[0], 2);
+    squares[1] += std::pow(child.genome[1] - 50, 2);
+  }
+  EXPECT_NEAR(std::sqrt(squares[0] / 400), 0.2, 0.03);
+  EXPECT_NEAR(std::sqrt(squares[1] / 400), 2, 0.3);
+}
+
 TEST(CmaEsSelection, OneNewbornOrNoneTeachesNothing) {
   const auto selection = make<Selection>("cma-es");
   EXPECT_EQ(selection->traits().least_children, 2u);

@@ -302,6 +302,20 @@ TEST(Uniform, TakesBlocksOfTheBetterAndGenesOfBoth) {
   EXPECT_NEAR(from_worse, 200, 50);
 }
 
+TEST(Uniform, TakesTheShareOfTheWorseThatIsAskedFor) {
+  const auto crossover = make<Crossover>("uniform", "share = 0.1");
+  const Layout layout = network();
+  Genome worse = first_network();
+  const Genome better = first_network();
+  worse[10] = 2.5f;
+  Rng rng = stream(2);
+  for (const auto& parents : {Parents{worse, better, true}, Parents{better, worse, false}}) {
+    int from_worse = 0;
+    for (int i = 0; i < 400; ++i) from_worse += crossover->cross(parents, layout, rng)[10] == 2.5f;
+    EXPECT_NEAR(from_worse, 40, 30);
+  }
+}
+
 TEST(Sbx, SpreadsChildrenAsDebAndAgrawalSay) {
   Layout layout;
   layout.add_block(1, {-100, 100});
@@ -364,6 +378,19 @@ TEST(Gaussian, StepsAreNormal) {
   EXPECT_NEAR(sum / 20000, 0, 0.003);
   EXPECT_NEAR(std::sqrt(squares / 20000), 0.1, 0.002);
   EXPECT_NEAR(beyond / 20000, 0.3173, 0.015) << "beyond one standard deviation";
+}
+
+TEST(Gaussian, ChangesTheShareOfGenesThatIsAskedFor) {
+  const auto mutation = make<Mutation>("gaussian", "share = 0.25");
+  const Layout layout = with_own(*mutation);
+  Rng rng = stream(5);
+  int changed = 0;
+  for (int i = 0; i < 20; ++i) {
+    Genome genome = zeros(*mutation, layout);
+    mutation->mutate(genome, layout, rng);
+    for (std::size_t gene = 0; gene < 1000; ++gene) changed += genome[gene] != 0;
+  }
+  EXPECT_NEAR(changed, 5000, 310);
 }
 
 TEST(Gaussian, StepSizeIsInheritedAndVaries) {

@@ -250,6 +250,7 @@ class Arguments(unittest.TestCase):
             r"rest_lengths: .* expected \[1\]": {"rest_lengths": [1, 2]},
             r"springs: join masses 0 to 2; expected indices of 2 masses": {"springs": [[0, 2]], "rest_lengths": None},
             r"masses: .*expected numbers": {"masses": ["light", "heavy"]},
+            r"materials: 'stifness' is not known; expected some of stiffness": {"materials": [{"stifness": 1}]},
             r"start_energy: .*expected a number": {"start_energy": "much"},
             r"time: .*expected a number": {"time": "late"},
         }.items():

@@ -96,6 +96,10 @@ TEST(Overlap, TheSceneOfTheFirstIsThereWithStillMuscles) {
   EXPECT_TRUE(all[2].muscles_still);
 }
 
+TEST(Overlap, ScenesThatCouldNotBeToldApartAreRefused) {
+  EXPECT_THROW(cases({"a/evo.toml", "b/evo.toml"}), std::invalid_argument);
+}
+
 TEST(Overlap, RandomRobotsGiveEveryTime) {
   const std::string file = ::testing::TempDir() + "stress-study.toml";
   std::ofstream(file) << R"(

@@ -28,6 +28,7 @@ TEST(StressSettings, HaveDefaults) {
 TEST(StressSettings, RefuseWhatCannotBeStudied) {
   EXPECT_THROW(parse({"a.toml"}), std::invalid_argument);
   EXPECT_THROW(parse({"charts", "--robots", "0"}), std::invalid_argument);
+  EXPECT_THROW(parse({"charts", "--robots", "-1"}), std::invalid_argument);
 }
 
 TEST(StressSettings, AreDescribedByTheHelp) {

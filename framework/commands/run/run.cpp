@@ -250,7 +250,8 @@ int say_complete(const Archive& archive) {
   const Summary last = archive.generations().back();
   std::cout << archive.folder().string() << ": the run is complete: " << last.evaluations << " evaluations in "
             << last.generation + 1 << " generations; to look at it: " << program_name() << " show "
-            << archive.folder().string() << std::endl;
+            << archive.folder().string() << "; to go on from its population in another run: " << program_name()
+            << " run EXPERIMENT.toml --set experiment.start=" << archive.folder().string() << std::endl;
   return 0;
 }
 

@@ -45,9 +45,12 @@ Arguments arguments_in(const std::string& line, const std::string& place) {
   return json.get<Arguments>();
 }
 
-/// Returns the values of the arguments of a line. A run that does not say how many threads it uses has `threads`.
+/// Returns the values of the arguments of a line. A run whose arguments do not say how many threads it uses has
+/// `threads`.
 Given read_line(Arguments arguments, const std::string& place, std::size_t threads) {
-  const auto is_about_threads = [](const std::string& word) { return word.starts_with("--threads"); };
+  const auto is_about_threads = [](const std::string& word) {
+    return word.starts_with("--threads") || word.find("simulation.threads=") != std::string::npos;
+  };
   if (std::ranges::none_of(arguments, is_about_threads))
     arguments.insert(arguments.end(), {"--threads", std::to_string(threads)});
   Given given;
@@ -56,7 +59,8 @@ Given read_line(Arguments arguments, const std::string& place, std::size_t threa
   } catch (const UsageError& error) {
     throw UsageError(place + ": " + error.what());
   }
-  if (!given.contains("out")) throw UsageError(place + ": --out: missing; give each run a folder");
+  if (!given.contains("out") || given["out"].as<std::string>().empty())
+    throw UsageError(place + ": --out: missing or empty; give each run a folder");
   for (const char* option : {"help", "until"})
     if (given.contains(option)) throw UsageError(place + ": --" + option + ": is for a single run; leave it out");
   return given;

@@ -90,6 +90,12 @@ Given parse(const Command& command, const Arguments& arguments) {
   Given given;
   try {
     po::store(po::command_line_parser(arguments).options(all).positional(positional).run(), given);
+  } catch (const po::unknown_option& error) {
+    std::vector<std::string> known;
+    for (const auto& option : all.options()) known.push_back("--" + option->long_name());
+    const std::string near = nearest(error.get_option_name(), known);
+    throw UsageError(printable(error.what()) + (near.empty() ? "" : "; did you mean \"" + near + "\"?") +
+                     usage_note(command));
   } catch (const po::error& error) {
     throw UsageError(printable(error.what()) + usage_note(command));
   }

@@ -69,9 +69,10 @@ void read_simulation(TomlReader& top, Settings& settings, Bodies bodies) {
 void check_duration(const TomlReader& t, std::string_view name, double duration, const StepRule& step) {
   if (!step.dt || is_whole_number_of_steps(duration, *step.dt)) return;
   const double dt = *step.dt, steps = std::max(1.0, std::round(duration / dt));
+  const double nearest = std::round(steps * dt * 1e12) / 1e12;  // without the digits of rounding errors
   t.report(name,
            to_text(duration) + " s is not a whole number of steps of " + to_text(dt) + " s; the nearest one is " +
-               to_text(steps * dt) + " s",
+               to_text(nearest) + " s; or choose another simulation.dt, such as \"auto\"",
            {"simulation"});
 }
 

@@ -9,6 +9,19 @@
 
 namespace evodevo::tools::accuracy {
 
+Experiment measurable_experiment(const std::string& file, std::vector<Override> set_by_study) {
+  for (Override& one : set_by_study) one.origin = file + " with " + one.key + " = " + one.value;
+  Experiment experiment = read_experiment({file, set_by_study});
+  const Fitness& fitness = *experiment.fitness.front().op;
+  const Request request = fitness.observes();
+  const Objective objective = fitness.objectives().front();
+  if (request.rate > 0 || request.work || request.cycle || objective.role != Role::objective || !objective.maximise)
+    throw ConfigError(file + ": fitness.0: \"" + objective.name +
+                      "\" cannot be measured here; put a fitness first of which more is better, and which compares "
+                      "where a robot is before and after the window, such as \"distance\"");
+  return experiment;
+}
+
 Fitnesses measure(const Experiment& experiment, std::span<const Body> bodies, const Setting& setting,
                   const Device& device, double perturbation) {
   const Fitness& fitness = *experiment.fitness.front().op;
@@ -24,7 +37,8 @@ Fitnesses measure(const Experiment& experiment, std::span<const Body> bodies, co
   for (const Traveller& robot : robots)
     observations.push_back({.box = bounding_box(robot.state.position),
                             .centre_before = centre_of_mass(*robot.body, robot.state.position),
-                            .window = request.window});
+                            .window = request.window,
+                            .body = robot.body});
   seconds += simulation.advance(robots, request.window);
 
   Fitnesses result{{}, seconds / (request.settle + request.window) / static_cast<double>(robots.size()), 0};

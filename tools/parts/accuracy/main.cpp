@@ -17,15 +17,17 @@ const Study& study_named(const std::string& name) {
 
 void run(const Settings& settings) {
   std::filesystem::create_directories(settings.folder);
+  const std::string device =
+      settings.device.description() + ", " + std::to_string(thread_count(settings.device.threads)) + " host threads";
+  const bool are_all = settings.studies.size() == studies.size();
   for (const std::string& name : settings.studies) {
     const auto start = std::chrono::steady_clock::now();
-    for (const Table& table : study_named(name).run(settings)) write(table, settings.folder);
+    const std::vector<Table> tables = study_named(name).run(settings);
+    write_origin(settings.folder, settings.command, device, !are_all);
+    for (const Table& table : tables) write(table, settings.folder);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     std::cerr << "accuracy: " << name << " took " << seconds.count() << " s\n";
   }
-  write_origin(
-      settings.folder, settings.command,
-      settings.device.description() + ", " + std::to_string(thread_count(settings.device.threads)) + " host threads");
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ std::vector<Override> overrides(const Settings& settings) {
 Experiment experiment_of(const Settings& settings, const std::vector<Override>& more = {}) {
   std::vector<Override> all = overrides(settings);
   all.insert(all.end(), more.begin(), more.end());
-  return read_experiment({settings.experiment, all});
+  return measurable_experiment(settings.experiment, all);
 }
 
 /// Measures the bodies that the genomes grow in an experiment with coarser bodies. If a genome grows no valid body
@@ -88,6 +88,9 @@ void compare(Table& table, const Settings& settings, bool on_rigid_floor) {
     return experiment;
   };
   const Experiment experiment = on_floor(experiment_of(settings));
+  std::vector<std::pair<std::string, Experiment>> coarser;  // read first, so that their faults cost no time
+  for (const Coarser& one : coarser_bodies())
+    coarser.emplace_back(one.name, on_floor(experiment_of(settings, one.overrides)));
   const std::vector<Genome> genomes = random_genomes(experiment, settings.robots, 1);
   std::vector<Body> bodies;
   for (const Genome& genome : genomes) bodies.push_back(*robot_of(experiment, genome));
@@ -103,9 +106,8 @@ void compare(Table& table, const Settings& settings, bool on_rigid_floor) {
         const Setting setting{method, precision, dt};
         comparison.add("as it is", "setting", setting, measure(experiment, bodies, setting, settings.device));
       }
-  for (const Coarser& coarser : coarser_bodies())
-    comparison.add(coarser.name, "coarser body", usual,
-                   measure_coarser(on_floor(experiment_of(settings, coarser.overrides)), genomes, settings.device));
+  for (const auto& [name, of_coarser] : coarser)
+    comparison.add(name, "coarser body", usual, measure_coarser(of_coarser, genomes, settings.device));
 }
 
 }  // namespace

@@ -152,7 +152,7 @@ class RandomBodies {
  public:
   RandomBodies(const Settings& settings)
       : settings_(settings),
-        experiment_(read_experiment({settings.experiment, overrides(settings.quick)})),
+        experiment_(measurable_experiment(settings.experiment, overrides(settings.quick))),
         bodies_(random_robots(experiment_, settings.quick ? 40 : 300, 1)) {}
 
   void add(double mass, double dt, const Floor& floor) {
@@ -192,7 +192,8 @@ class RandomBodies {
     const Fitnesses again =
         measure(experiment_, champions, {Method::velocity_verlet, Precision::float64, dt / 4}, host);
     std::vector<double> kept;
-    for (std::size_t i = 0; i < order.size(); ++i) kept.push_back(again.values[i] / values[order[i]]);
+    for (std::size_t i = 0; i < order.size(); ++i)  // what diverges keeps nothing
+      kept.push_back(std::isnan(again.values[i]) ? 0 : again.values[i] / values[order[i]]);
     std::sort(kept.begin(), kept.end());
     return kept[kept.size() / 2];
   }

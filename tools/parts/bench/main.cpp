@@ -44,8 +44,11 @@ Report read_reports(const std::string& file) {
   std::ifstream stream(file);
   if (!stream) throw std::runtime_error(file + ": cannot be read");
   try {
-    return Report::parse(stream);
-  } catch (const Report::exception& error) {
+    const Report report = Report::parse(stream);
+    for (const Report& one : report.is_array() ? report : Report::array({report}))
+      if (!is_report(one)) throw std::runtime_error("it holds something else");
+    return report;
+  } catch (const std::exception& error) {
     throw std::runtime_error(file + ": is not JSON that this program has written: " + error.what());
   }
 }
@@ -53,7 +56,7 @@ Report read_reports(const std::string& file) {
 void run(const Settings& settings) {
   const Report report = settings.tables.empty() ? measure(settings) : read_reports(settings.tables);
   if (settings.json) {
-    std::cout << report.dump(2) << '\n';
+    std::cout << report.dump(2, ' ', false, Report::error_handler_t::replace) << '\n';
     return;
   }
   const Report list = report.is_array() ? report : Report::array({report});

@@ -40,6 +40,14 @@ std::string table(const Report& rows) {
 
 }  // namespace
 
+bool is_report(const Report& report) {
+  const auto is_text = [&](const char* key) { return report.contains(key) && report[key].is_string(); };
+  if (!report.is_object() || !is_text("study") || !is_text("command") || !report.contains("rows")) return false;
+  const Report& rows = report["rows"];
+  return rows.is_array() && !rows.empty() &&
+         std::all_of(rows.begin(), rows.end(), [](const Report& row) { return row.is_object() && !row.empty(); });
+}
+
 Report conditions(const Settings& settings, const std::string& study, const std::string& device,
                   const NamedBody& body) {
   return {{"study", study},

@@ -18,4 +18,7 @@ Report conditions(const Settings& settings, const std::string& study, const std:
 /// objects with the same keys.
 std::string markdown(const Report& report);
 
+/// Whether JSON is a report that markdown() can read.
+bool is_report(const Report& report);
+
 }  // namespace evodevo::tools::bench

@@ -1,7 +1,10 @@
 #include "common/program.hpp"
 
 #include <algorithm>
+#include <cctype>
+#include <fstream>
 #include <iostream>
+#include <iterator>
 #include <stdexcept>
 
 #include "base/output_file.hpp"
@@ -38,7 +41,12 @@ boost::program_options::variables_map read_options(
     const boost::program_options::positional_options_description& positional) {
   namespace po = boost::program_options;
   po::variables_map values;
-  po::store(po::command_line_parser(line).options(options).positional(positional).run(), values);
+  const po::parsed_options parsed = po::command_line_parser(line).options(options).positional(positional).run();
+  for (const po::option& option : parsed.options)  // Boost turns negative numbers into large ones
+    for (const std::string& value : option.value)
+      if (value.size() > 1 && value[0] == '-' && std::isdigit(static_cast<unsigned char>(value[1])))
+        throw std::invalid_argument("--" + option.string_key + ' ' + value + ": expected a number of at least 0");
+  po::store(parsed, values);
   po::notify(values);
   return values;
 }
@@ -71,8 +79,14 @@ void check_device(const std::string& device) {
 #endif
 }
 
-void write_origin(const std::filesystem::path& folder, const std::string& command, const std::string& device) {
-  write_file(folder / "origin.txt", command + '\n' + device + '\n');
+void write_origin(const std::filesystem::path& folder, const std::string& command, const std::string& device,
+                  bool keeps) {
+  const std::filesystem::path file = folder / "origin.txt";
+  const std::string origin = command + '\n' + device + '\n';
+  std::string others;
+  if (std::ifstream stream(file); keeps && stream) others.assign(std::istreambuf_iterator<char>(stream), {});
+  if (const std::size_t at = others.find(origin); at != std::string::npos) others.erase(at, origin.size());
+  write_file(file, others + origin);
 }
 
 }  // namespace evodevo::tools

@@ -41,7 +41,9 @@ void check_choice(const std::string& option, const std::string& value, const std
 /// Throws std::invalid_argument if this program cannot compute on that device.
 void check_device(const std::string& device);
 
-/// Writes origin.txt, which names the command and the device that produced the results in a folder.
-void write_origin(const std::filesystem::path& folder, const std::string& command, const std::string& device);
+/// Writes origin.txt, which names the command and the device that produced the results in a folder. If `keeps`, those
+/// of commands that produced other results there stay in front of it.
+void write_origin(const std::filesystem::path& folder, const std::string& command, const std::string& device,
+                  bool keeps = false);
 
 }  // namespace evodevo::tools

@@ -19,16 +19,17 @@ std::string device_of(const Settings& settings) {
 
 void run(const Settings& settings) {
   std::filesystem::create_directories(settings.folder);
+  const std::vector<Case> all = cases(settings.experiments);
+  for (const Case& one : all) experiment_of(one, settings.device);  // faults are found before anything is simulated
+  write_origin(settings.folder, settings.command, device_of(settings));
   Table table = overlap_table();
-  for (const Case& one : cases(settings.experiments)) {
+  for (const Case& one : all) {
     std::cerr << "stress: " << settings.robots << " robots of " << one.scene << '\n';
     add_rows(one, simulate(one, settings.robots, settings.device), table);
+    write(table, settings.folder);
+    write(shortest_cycles(table, shares), settings.folder);
   }
-  const Table shortest = shortest_cycles(table, shares);
-  write(table, settings.folder);
-  write(shortest, settings.folder);
-  write_origin(settings.folder, settings.command, device_of(settings));
-  std::cout << shortest.csv();
+  std::cout << shortest_cycles(table, shares).csv();
 }
 
 }  // namespace

@@ -114,15 +114,25 @@ Found found(const std::vector<double>& truth, const std::vector<double>& estimat
 
 std::vector<Case> cases(const std::vector<std::string>& experiments) {
   std::vector<Case> all;
-  for (const std::string& file : experiments) all.push_back({std::filesystem::path(file).stem().string(), file});
+  for (const std::string& file : experiments) {
+    const std::string name = std::filesystem::path(file).stem().string();
+    for (const Case& other : all)
+      if (other.scene == name)
+        throw std::invalid_argument(file + ": " + other.experiment + " has the same name; rename one of them");
+    all.push_back({name, file});
+  }
   all.push_back({all.front().scene + ", muscles still", all.front().experiment, true});
   return all;
 }
 
 std::vector<double> cycle_times() { return {0.05, 0.1, 0.2, 0.5, 1, 2, 5, 6.5, 8, 10}; }
 
+Experiment experiment_of(const Case& one, const std::string& device) {
+  return read_experiment({one.experiment, {{"simulation.device", device, "--device"}}});
+}
+
 std::vector<StressOverTime> simulate(const Case& one, std::size_t robots, const std::string& device) {
-  const Experiment experiment = read_experiment({one.experiment, {{"simulation.device", device, "--device"}}});
+  const Experiment experiment = experiment_of(one, device);
   const std::vector<Genome> genomes = random_genomes(experiment, robots, fewest_springs);
   std::vector<Newborn> newborns;
   for (const Genome& genome : genomes) newborns.push_back({static_cast<std::uint32_t>(newborns.size()), 0, &genome});

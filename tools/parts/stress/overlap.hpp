@@ -39,6 +39,9 @@ std::vector<Case> cases(const std::vector<std::string>& experiments);
 /// Returns the cycle times, s. All others are compared with the last one.
 std::vector<double> cycle_times();
 
+/// Reads the experiment of a case.
+Experiment experiment_of(const Case& one, const std::string& device);
+
 /// Simulates `robots` random robots of a case from birth on, with the time stepping of the experiment. All of them have
 /// a muscle and enough springs. Returns the stress of those that have not diverged.
 std::vector<StressOverTime> simulate(const Case& one, std::size_t robots, const std::string& device);

@@ -35,6 +35,8 @@ class Body:
         springs = _array("springs", self.springs, int, (None, 2))
         n, m = len(positions), len(springs)
         materials = pd.DataFrame(self.materials).copy()
+        if unknown := [name for name in materials if name not in (*MATERIAL, "name")]:
+            raise ValueError(f"materials: {unknown[0]!r} is not known; expected some of {', '.join(MATERIAL)}")
         for name in MATERIAL:
             materials[name] = materials[name].astype(float) if name in materials else 0.0
         rest_lengths = self.rest_lengths
