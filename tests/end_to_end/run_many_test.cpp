@@ -84,8 +84,10 @@ TEST_F(RunMany, RunsAreTheSameAsAlone) {
 }
 
 TEST_F(RunMany, ARunHasTheThreadsThatItsArgumentsAskFor) {
-  const Finished finished = testing::run(
-      command({arguments("set", {"--set", "simulation.threads=3"}), arguments("given", {"--threads", "3"})}, 2));
+  const Finished finished =
+      testing::run(command({arguments("set", {"--device", "cpu", "--set", "simulation.threads=3"}),
+                            arguments("given", {"--device", "cpu", "--threads", "3"})},
+                           2));
   ASSERT_EQ(finished.exit_code, 0) << finished.output;
   for (const char* name : {"set", "given"}) EXPECT_THAT(log_of(name), testing::naming("3 threads")) << name;
 }

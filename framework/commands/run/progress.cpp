@@ -156,9 +156,11 @@ void print_best(const Experiment& experiment, const Archive& archive) {
   }
 }
 
-void print_speed(double spring_evaluations, double seconds) {
-  remarks() << "speed: " << short_number(spring_evaluations / seconds) << " spring evaluations/s ("
-            << short_number(spring_evaluations) << " in " << duration_text(seconds) << ")" << std::endl;
+void print_speed(double spring_evaluations, double seconds, double verifying) {
+  const double evaluating = seconds - verifying;
+  remarks() << "speed: " << short_number(spring_evaluations / evaluating) << " spring evaluations/s ("
+            << short_number(spring_evaluations) << " in " << duration_text(evaluating)
+            << (verifying > 0 ? ", without " + duration_text(verifying) + " of verification" : "") << ")" << std::endl;
 }
 
 void print_shares(const std::vector<Share>& shares, double whole) {

@@ -58,8 +58,9 @@ std::string duration_text(double seconds);
 /// Prints the best robot and the folder of the run, or that no robot has a fitness.
 void print_best(const Experiment& experiment, const Archive& archive);
 
-/// Prints the speed at which a number of spring evaluations took some seconds.
-void print_speed(double spring_evaluations, double seconds);
+/// Prints the speed at which a number of spring evaluations took some seconds, of which some were spent verifying the
+/// front, whose spring evaluations are not counted.
+void print_speed(double spring_evaluations, double seconds, double verifying = 0);
 
 /// Prints what each rank has contributed to a run that took `whole` seconds.
 void print_shares(const std::vector<Share>& shares, double whole);

@@ -188,7 +188,7 @@ int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archiv
   progress.finish();
   record_time_spent(archive, time);
   print_best(experiment, archive);
-  print_speed(static_cast<double>(progress.spring_evaluations()), progress.seconds());
+  print_speed(static_cast<double>(progress.spring_evaluations()), progress.seconds(), time.verify);
   print_time_spent(time, simulator);
   if (farm) {
     print_shares(farm->shares(), time.whole);
