@@ -1,6 +1,7 @@
 // Simulates batches of random bodies, and tells as a line of JSON for each what does not hold:
 //   - a body ends as ok with finite numbers, or as diverged with a reason and without records;
-//   - a body has the same bits among other bodies, or diverges at the same time for the same reason;
+//   - a body has the same bits among other bodies and when it is sampled, or diverges at the same time for the same
+//     reason;
 //   - a tame body moves on a GPU as on the CPU, unless rounding decides how it moves.
 //
 //   hostile_bodies cpu|cuda FIRST_BATCH BATCHES BODIES
@@ -69,6 +70,14 @@ std::string difference(const Answer& a, const Answer& b) {
   return same_records ? "" : "records";
 }
 
+/// Samples of everything at the beginning, twice after a third of a life, and at its end.
+std::vector<SamplePoint> points_of(const Life& life) {
+  std::vector<SamplePoint> points;
+  for (const std::uint64_t step : {std::uint64_t{0}, life.steps / 3, life.steps / 3, life.steps})
+    points.push_back({step, {true, true, true, true, true, true, true, true}});
+  return points;
+}
+
 /// Every so many lives, in reversed order.
 std::vector<std::size_t> some(std::size_t lives) {
   std::vector<std::size_t> chosen;
@@ -103,11 +112,18 @@ class Trial {
 
   void compare_among_others(const std::vector<Answer>& answers) {
     std::vector<Life> lives;
-    for (const std::size_t i : some(answers.size())) lives.push_back(batch_.lives[i]);
+    for (const std::size_t i : some(answers.size())) {
+      lives.push_back(batch_.lives[i]);
+      lives.back().sampled_at = points_of(lives.back());
+    }
     const std::vector<Answer> again = simulate(*simulator_, lives, batch_.recording);
-    for (std::size_t k = 0; const std::size_t i : some(answers.size()))
-      if (const std::string what = difference(answers[i], again[k++]); !what.empty())
-        tell(i, "among other bodies, another " + what);
+    for (std::size_t k = 0; const std::size_t i : some(answers.size())) {
+      const Answer& sampled = again[k++];
+      if (const std::string what = difference(answers[i], sampled); !what.empty())
+        tell(i, "sampled, among other bodies, another " + what);
+      else if (sampled.task.status == Status::ok && sampled.task.samples.size() != sampled.task.sampled_at.size())
+        tell(i, "not sampled as often as requested");
+    }
   }
 
   void compare_with_cpu(const std::vector<Answer>& answers) {

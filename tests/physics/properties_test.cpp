@@ -144,7 +144,7 @@ TEST_P(ExactProperty, MomentumIsWhatGravityAndDampingLeave) {
     const std::vector<Answer> answers = simulate(*simulator(scene), lives);
     for (std::size_t i = 0; i < lives.size(); ++i) {
       SCOPED_TRACE(trace(lives[i]));
-      const auto& [life_seed, body, start, dt, steps] = lives[i];
+      const auto& [life_seed, body, start, dt, steps, sampled_at] = lives[i];
       const Momentum before = momentum(body, start), after = momentum(body, answers[i].state);
       const auto n = static_cast<double>(steps);
       Vec3 expected = before.linear;

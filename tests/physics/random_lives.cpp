@@ -108,7 +108,11 @@ std::vector<Answer> simulate(Simulator& simulator, const std::vector<Life>& live
   std::vector<Task> tasks(lives.size());
   for (std::size_t i = 0; i < lives.size(); ++i) {
     answers[i].state = lives[i].start;
-    tasks[i] = {.body = &lives[i].body, .state = &answers[i].state, .dt = lives[i].dt, .steps = lives[i].steps};
+    tasks[i] = {.body = &lives[i].body,
+                .state = &answers[i].state,
+                .dt = lives[i].dt,
+                .steps = lives[i].steps,
+                .sampled_at = lives[i].sampled_at};
   }
   simulator.run(tasks, recording);
   for (std::size_t i = 0; i < lives.size(); ++i) {

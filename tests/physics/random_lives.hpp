@@ -15,6 +15,7 @@ struct Life {
   State start;
   double dt = 0.0005;  ///< time step [s]
   std::uint64_t steps = 60;
+  std::vector<SamplePoint> sampled_at = {};
 };
 
 /// Returns a scene with random forces of random strength.

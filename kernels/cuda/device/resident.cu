@@ -243,13 +243,9 @@ __device__ __forceinline__ void take_samples(const Body& body, const Share& shar
     if (mark.channels & forces_bit)
       write_forces(body, share, lengths, halo.set(), lists.forces + (clustered ? sampling.first_slot : 0));
     if (next.step != done) return;
-    __syncthreads();
+    synchronise_warps();
   }
 }
-
-/// Waits for all warps of the block, which may come from different places in the code. __syncthreads() does not allow
-/// that, and costs about 1 % of the time less.
-__device__ __forceinline__ void synchronise_warps() { asm volatile("barrier.cta.sync 0;" ::: "memory"); }
 
 /// Computes `count` steps after the first `done`; the table holds their lengths. The sums exist only in this function,
 /// which calls only inlined functions, so they stay in registers. A warp without springs only moves masses. Takes the

@@ -37,6 +37,10 @@ struct NextSample {
   }
 };
 
+/// Waits for all warps of the block, which may come from different places in the code. __syncthreads() does not allow
+/// that, and costs about 1 % of the time less.
+__device__ __forceinline__ void synchronise_warps() { asm volatile("barrier.cta.sync 0;" ::: "memory"); }
+
 struct Add {
   template <class T>
   __device__ __forceinline__ T operator()(T a, T b) const {
@@ -83,10 +87,10 @@ __device__ __forceinline__ void write_joined(T (&values)[8], Join join, T nothin
   const T of_warp = across_warp(values, join);
 #pragma unroll
   for (unsigned first = 0; first < 8; first += room) {
-    if (first > 0) __syncthreads();
+    if (first > 0) synchronise_warps();
     const unsigned i = lane / 4 - first;
     if (lane % 4 == 0 && i < room) shared[warp * room + i] = of_warp;
-    __syncthreads();
+    synchronise_warps();
     if (!writes) continue;
 #pragma unroll
     for (unsigned k = 0; k < room; ++k) values[first + k] = lane < warps ? shared[lane * room + k] : nothing;
@@ -139,7 +143,7 @@ struct Reduction {
   __device__ __forceinline__ void write(const SampleMark& mark) {
     auto* to = reinterpret_cast<ReducedSample*>(mark.to);
     if (has_sums(mark)) write_sums(to->centre);
-    if (has_sums(mark) && has_extremes(mark)) __syncthreads();
+    if (has_sums(mark) && has_extremes(mark)) synchronise_warps();
     if (has_extremes(mark)) write_extremes(to->low);
   }
 };
