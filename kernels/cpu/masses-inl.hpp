@@ -109,7 +109,7 @@ HWY_INLINE V push_off(const Ground<V>& ground, V lift, Triple<V>& v) {
   return lift / square_root(squared);
 }
 
-/// Reduces velocities by the friction of a rigid floor that has added `push` (m/s) along its unit normal.
+/// Reduces velocities by the friction of a floor that has added `push` (m/s) along its unit normal.
 template <class T, class V>
 HWY_INLINE void rub(const cpu::StepConstants<T>& constants, const Ground<V>& ground, V push, Triple<V>& v) {
   const hn::ScalableTag<T> d;
@@ -254,21 +254,44 @@ HWY_INLINE void damp(const cpu::Motion<T>& m, T decay_, std::size_t masses) {
     for (std::size_t i = 0; i < masses; i += hn::Lanes(d)) hn::Store(hn::Load(d, v + i) * decay, d, v + i);
 }
 
-/// Reduces the tangential velocities vx, vy (m/s) by the friction that acts for `time` seconds under the normal forces
+template <class T>
+HWY_INLINE Triple<T*> velocities(const cpu::Motion<T>& m) {
+  return {m.vx, m.vy, m.vz};
+}
+
+/// apply_friction() on rough ground, where m.floor_force is the vertical part of the normal force.
+template <class T>
+HWY_INLINE void apply_friction_along_ground(const cpu::Motion<T>& m, const cpu::StepConstants<T>& constants, T time,
+                                            const Triple<T*>& velocity, std::size_t masses) {
+  const hn::ScalableTag<T> d;
+  using V = hn::Vec<decltype(d)>;
+  for (std::size_t i = 0; i < masses; i += hn::Lanes(d)) {
+    const Ground<V> ground = ground_under(m, constants, i);
+    const V up = hn::Set(d, time) * hn::Load(d, m.floor_force + i) * hn::Load(d, m.inverse_mass + i);
+    Triple<V> v{hn::Load(d, velocity.x + i), hn::Load(d, velocity.y + i), hn::Load(d, velocity.z + i)};
+    rub(constants, ground, up * square_root(normal_squared(ground)), v);
+    hn::Store(v.x, d, velocity.x + i);
+    hn::Store(v.y, d, velocity.y + i);
+    hn::Store(v.z, d, velocity.z + i);
+  }
+}
+
+/// Reduces velocities (m/s) along an elastic floor by the friction that acts for `time` seconds under the normal forces
 /// m.floor_force.
 template <class T>
-HWY_INLINE void apply_friction(const cpu::Motion<T>& m, const cpu::StepConstants<T>& constants, T time, T* vx_, T* vy_,
-                               std::size_t masses) {
+HWY_INLINE void apply_friction(const cpu::Motion<T>& m, const cpu::StepConstants<T>& constants, T time,
+                               const Triple<T*>& velocity, std::size_t masses) {
+  if (constants.rough) return apply_friction_along_ground(m, constants, time, velocity, masses);
   const hn::ScalableTag<T> d;
   const auto coefficient_dt = hn::Set(d, constants.friction_coefficient * time);
   const auto static_dt = hn::Set(d, constants.static_coefficient * time);
   for (std::size_t i = 0; i < masses; i += hn::Lanes(d)) {
-    const auto vx = hn::Load(d, vx_ + i), vy = hn::Load(d, vy_ + i);
+    const auto vx = hn::Load(d, velocity.x + i), vy = hn::Load(d, velocity.y + i);
     const auto force = hn::Load(d, m.floor_force + i), inverse_mass = hn::Load(d, m.inverse_mass + i);
     auto kept = friction_factor(vx, vy, coefficient_dt * force * inverse_mass);
     if (constants.static_friction) kept = kept_unless_held(vx, vy, static_dt * force * inverse_mass, kept);
-    hn::Store(vx * kept, d, vx_ + i);
-    hn::Store(vy * kept, d, vy_ + i);
+    hn::Store(vx * kept, d, velocity.x + i);
+    hn::Store(vy * kept, d, velocity.y + i);
   }
 }
 

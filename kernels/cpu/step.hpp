@@ -79,7 +79,7 @@ struct Motion {
   T *vx, *vy, *vz;            ///< m/s
   T* interleaved_velocities;  ///< velocities at which dashpots act, like the positions, m/s; null without dashpots
   T *fx, *fy, *fz;            ///< N
-  T* floor_force;             ///< normal force of an elastic floor, N
+  T* floor_force;             ///< normal force of an elastic floor, on rough ground its vertical part, N
   T* arrival;                 ///< of a rigid floor: rise of each mass at the beginning of a step, m/s
   T* push;                    ///< velocity that a rigid floor has added in a step along its unit normal, m/s
   T* mass_scratch;            ///< Integrator::mass_arrays arrays, one number for each mass

@@ -88,7 +88,7 @@ void touch_floor(const Stepper<T>& s) {
   if (s.constants.rigid)
     land(s.motion, s.constants, s.masses);
   else if (s.constants.friction)
-    apply_friction(s.motion, s.constants, s.constants.step.dt, s.motion.vx, s.motion.vy, s.masses);
+    apply_friction(s.motion, s.constants, s.constants.step.dt, velocities(s.motion), s.masses);
 }
 
 /// The base of a method, with defaults that the method may override. The method adds `step(stepper, row)`, which

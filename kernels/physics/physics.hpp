@@ -347,8 +347,8 @@ EVODEVO_HD T kept_unless_held(T vx, T vy, T held, T kept) {
   return zero_unless_greater(square_root(multiply_add(vy, vy, vx * vx)), held, kept);
 }
 
-/// The velocity (m/s) of a mass after the friction of a rigid floor has acted on its part along the ground. `push` is
-/// the velocity that the floor has added along its unit normal, N dt/m (m/s).
+/// The velocity (m/s) of a mass after the friction of the floor has acted on its part along the ground. `push` is the
+/// velocity that the floor has added along its unit normal, N dt/m (m/s).
 template <class T>
 EVODEVO_HD Triple<T> after_friction(const Ground<T>& ground, const Triple<T>& v, T push, T coefficient,
                                     T static_coefficient) {

@@ -149,6 +149,47 @@ TEST_P(OnRoughGround, FrictionHoldsAMassInsideTheConeAndOnlyThere) {
   EXPECT_GT(norm(b.state.position[0] - slipping.masses[0].rest), 1e-3);
 }
 
+/// A mass on wide hills, whose slope hardly changes within centimetres, with a velocity down the slope.
+struct Slide {
+  double start;        ///< velocity along the ground, m/s; negative if the mass moves up
+  double coefficient;  ///< of friction, 1
+  double duration = 0.05;
+
+  /// The velocity along the ground in the end, down the slope, m/s.
+  double end(const Arithmetic& arithmetic) const {
+    const Scene scene{Gravity{}, Floor{1e4, 1.5, 20, 3}, Friction{coefficient}, {}, {}};
+    const auto here = ground(*scene.floor, x, y);
+    const double depth = mass * g / (scene.floor->stiffness * physics::normal_squared(here));
+    const Body body = single_mass(mass, {x, y, here.height - depth});
+    const double slope = std::hypot(here.slope_x, here.slope_y);
+    const Vec3 down{-here.slope_x / slope, -here.slope_y / slope, -slope};
+    State state = resting(body, scene);
+    state.velocity[0] = start / norm(down) * down;
+    const auto [method, precision] = arithmetic;
+    const Answer a = simulate(body, state, scene, {method, precision, 0.0005}, std::lround(duration / 0.0005));
+    EXPECT_EQ(a.task.status, Status::ok) << a.task.reason;
+    return dot(a.state.velocity[0], down) / norm(down);
+  }
+
+  /// The same of a block on an inclined plane, as long as it does not stop.
+  double expected() const {
+    const auto here = ground(Floor{1e4, 1.5, 20, 3}, x, y);
+    const double angle = std::atan(std::hypot(here.slope_x, here.slope_y)), direction = start < 0 ? -1 : 1;
+    return start + g * (std::sin(angle) - direction * coefficient * std::cos(angle)) * duration;
+  }
+
+ private:
+  static constexpr double mass = 0.2, x = 6.7, y = 4.4;  // kg, m, m; the slope is 0.30
+};
+
+TEST_P(OnRoughGround, FrictionSlowsDownAMassAsOnAnInclinedPlane) {
+  for (const Slide& slide : {Slide{0.3, 0.7}, Slide{0.3, 0.15}, Slide{-0.6, 0.7}, Slide{-0.4, 0.15}}) {
+    EXPECT_GT(std::abs(slide.expected()), 0.05) << "it stops";
+    // friction that acted on the horizontal velocity alone would be 0.003 to 0.07 m/s off
+    EXPECT_NEAR(slide.end(GetParam()), slide.expected(), 0.002) << slide.start << " m/s, " << slide.coefficient;
+  }
+}
+
 /// The energy of the body, including the elastic energy of the ground, J.
 double whole_energy(const Body& body, const State& state, const Scene& scene) {
   double energy = total_energy(body, state, scene);

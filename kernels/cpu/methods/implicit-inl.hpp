@@ -50,7 +50,7 @@ struct Implicit : ImplicitFloor {
       land_held(s, memory);
     } else if (s.constants.friction) {
       set_floor_force(s, memory);
-      apply_friction(s.motion, s.constants, s.constants.step.dt, s.motion.vx, s.motion.vy, s.masses);
+      apply_friction(s.motion, s.constants, s.constants.step.dt, velocities(s.motion), s.masses);
     }
     advance_positions(s.motion, s.constants.step.dt, s.masses);
     if (s.is_recording()) s.compute(s.recording_springs, row + 1);

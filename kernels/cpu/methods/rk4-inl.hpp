@@ -251,8 +251,9 @@ struct Rk4 : StepMethod {
     const hn::ScalableTag<T> d;
     for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d))
       hn::Store(hn::Load(d, mean_floor_force(s) + i), d, s.motion.floor_force + i);
-    apply_friction(s.motion, s.constants, time, s.motion.vx, s.motion.vy, s.masses);
-    apply_friction(s.motion, s.constants, time / 2, axis(s, 0).mean_velocity, axis(s, 1).mean_velocity, s.masses);
+    apply_friction(s.motion, s.constants, time, velocities(s.motion), s.masses);
+    const Triple<T*> mean{axis(s, 0).mean_velocity, axis(s, 1).mean_velocity, axis(s, 2).mean_velocity};
+    apply_friction(s.motion, s.constants, time / 2, mean, s.masses);
   }
 };
 

@@ -61,7 +61,7 @@ struct VelocityVerlet : StepMethod {
     const T time = s.constants.half_step.dt;
     advance_velocities(s.motion, time, s.masses);
     if (s.constants.friction && !s.constants.rigid)
-      apply_friction(s.motion, s.constants, time, s.motion.vx, s.motion.vy, s.masses);
+      apply_friction(s.motion, s.constants, time, velocities(s.motion), s.masses);
   }
 
   /// Stops the descent of masses that a rigid floor has pushed before the drift.

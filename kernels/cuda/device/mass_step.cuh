@@ -203,12 +203,26 @@ __device__ __forceinline__ void damp(Number decay, Moving& m) {
   if constexpr (damping) m.velocity = scaled(m.velocity, decay);
 }
 
-/// Reduces a velocity by the friction of an elastic floor, which acts for `part` of the step (1).
+/// Reduces a velocity by the friction of a floor that has added `push` (m/s) along its unit normal.
+__device__ __forceinline__ void rub(const StepConstants<Number>& constants, const physics::Ground<Number>& ground,
+                                    Number push, Vector& velocity) {
+  if constexpr (friction)
+    velocity =
+        physics::after_friction(ground, velocity, push, constants.friction_coefficient, constants.static_coefficient);
+}
+
+/// Reduces a velocity by the friction of an elastic floor, which acts for `part` of the step (1). On rough ground,
+/// m.normal_force is the vertical part of the normal force.
 __device__ __forceinline__ void apply_friction(const StepConstants<Number>& constants, Number part, const Moving& m,
                                                Vector& velocity) {
   if constexpr (elastic_floor && friction) {
     // most masses do not touch the floor, and keep their velocity
-    if (m.normal_force > 0) {
+    if (!(m.normal_force > 0)) return;
+    if constexpr (rough) {
+      const auto ground = ground_under(constants, m.position);
+      const Number up = constants.dt * part * m.normal_force * m.inverse_mass;
+      rub(constants, ground, up * physics::square_root(physics::normal_squared(ground)), velocity);
+    } else {
       Number kept = physics::friction_factor(velocity.x, velocity.y,
                                              constants.friction_dt * part * m.normal_force * m.inverse_mass);
       if constexpr (static_friction) {
@@ -238,14 +252,6 @@ __device__ __forceinline__ Number push_off(const physics::Ground<Number>& ground
   const Number squared = physics::normal_squared(ground);
   velocity = physics::add_along_normal(ground, velocity, lift / squared);
   return lift / physics::square_root(squared);
-}
-
-/// Reduces a velocity by the friction of a rigid floor that has added `push` (m/s) along its unit normal.
-__device__ __forceinline__ void rub(const StepConstants<Number>& constants, const physics::Ground<Number>& ground,
-                                    Number push, Vector& velocity) {
-  if constexpr (friction)
-    velocity =
-        physics::after_friction(ground, velocity, push, constants.friction_coefficient, constants.static_coefficient);
 }
 
 /// Lets a rigid floor and its friction act on the velocity that all other forces have given a mass in a step.
