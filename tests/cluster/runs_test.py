@@ -15,16 +15,29 @@ from small_experiment import small_experiment
 PROGRAM = os.environ["EVODEVO_PROGRAM"]
 SCRIPT = pathlib.Path(__file__).parents[2] / "tools" / "cluster" / "run.sbatch"
 
-# about 60 generations, which take some seconds
-EXPERIMENT = small_experiment(
-    development=True, evaluations=427, population=7, size="[3, 2, 2]", cycle_time=0.31, springs=3, settle=0.7, window=1.3
-)
+# the experiments by name, with their numbers of evaluations: a run of `walk` takes two seconds, and one of `hike`
+# fifteen, so that something can happen to it before it has ended; one of `trek` would take hours
+EVALUATIONS = {"walk": 427, "hike": 3003, "trek": 4270003}
+VALUES = {"population": 7, "size": "[3, 2, 2]", "cycle_time": 0.31, "springs": 3, "settle": 0.7, "window": 1.3}
 TABLES = ("generations", "individuals", "scores", "lives", "memory", "verifications")
 
 
 def setUpModule():
     global cluster
     cluster = unittest.enterModuleContext(slurm.Cluster())
+    for name, count in EVALUATIONS.items():
+        experiment(name).write_text(small_experiment(development=True, evaluations=count, **VALUES))
+    for name in ("walk", "hike"):
+        run(PROGRAM, "run", experiment(name), "--out", straight(name), "--no-report")
+
+
+def experiment(name):
+    return cluster.folder / f"{name}.toml"
+
+
+def straight(name):
+    """Returns the folder of a run of an experiment that one process has made."""
+    return cluster.folder / f"straight-{name}"
 
 
 class Runs(unittest.TestCase):
@@ -33,8 +46,6 @@ class Runs(unittest.TestCase):
         self.folder.mkdir()
         self.addCleanup(run, "scancel", "--user=root")
         os.chdir(self.folder)
-        pathlib.Path("walk.toml").write_text(EXPERIMENT)
-        run(PROGRAM, "run", "walk.toml", "--out", "straight", "--no-report")
 
     def submit(self, *words):
         """Submits the batch script and returns the number of the job."""
@@ -91,14 +102,14 @@ class Runs(unittest.TestCase):
                     row.pop("provenance", None)
         return found
 
-    def expect_same_rows(self, folder):
-        straight = self.rows("straight")
-        self.assertEqual(len(straight["individuals"]), 427)
-        self.assertEqual(self.rows(folder), straight)
+    def expect_same_rows(self, folder, name="walk"):
+        expected = self.rows(straight(name))
+        self.assertEqual(len(expected["individuals"]), EVALUATIONS[name])
+        self.assertEqual(self.rows(folder), expected)
 
     def test_two_nodes_make_the_same_run_as_one_process(self):
-        printed = run("srun", "--nodes=2", "--ntasks=2", "--gpus-per-task=1", "--mpi=pmix", PROGRAM, "run", "walk.toml",
-                      "--device", "cpu", "--out", "ranks", "--no-report")
+        printed = run("srun", "--nodes=2", "--ntasks=2", "--gpus-per-task=1", "--mpi=pmix", PROGRAM, "run",
+                      experiment("walk"), "--device", "cpu", "--out", "ranks", "--no-report")
         self.assertRegex(printed, r"rank 0 on one: .*\nrank 1 on two: ")
         self.expect_same_rows("ranks")
 
@@ -109,29 +120,32 @@ class Runs(unittest.TestCase):
 
     def test_the_batch_script_makes_a_run_of_several_ranks(self):
         two = ("--nodes=2", "--ntasks=2", "--gpus-per-task=1")
-        job = self.submit("--wait", *two, SCRIPT, "walk.toml", "--out", "ranks")
+        job = self.submit("--wait", *two, SCRIPT, experiment("walk"), "--out", "ranks")
         self.wait_for_end(job)
         self.assertIn("rank 1 on two", self.printed(job))
         self.expect_same_rows("ranks")
 
     def test_each_task_of_an_array_makes_a_run(self):
         seeds = {1: 3, 2: 17, 3: 1}
-        lines = (f"walk.toml --out 'a {task}' --seed {seed}\n" for task, seed in seeds.items())
+        walk = experiment("walk")
+        lines = (f"{walk} --out 'a {task}' --seed {seed}\n" for task, seed in seeds.items())
         pathlib.Path("tasks").write_text("".join(lines))
         self.submit("--wait", "--array=1-3", SCRIPT, "tasks")
         for task, seed in seeds.items():
-            run(PROGRAM, "run", "walk.toml", "--out", f"alone-{task}", "--seed", seed, "--no-report")
+            run(PROGRAM, "run", walk, "--out", f"alone-{task}", "--seed", seed, "--no-report")
             self.assertEqual(self.rows(f"a {task}"), self.rows(f"alone-{task}"))
 
-    def begin(self, *words):
+    def begin(self, *words, name="hike"):
         """Submits a run that has begun when this returns."""
-        job = self.submit(*words, SCRIPT, "walk.toml", "--out", "resumed")
+        job = self.submit(*words, SCRIPT, experiment(name), "--out", "resumed")
         self.wait_for_generations("resumed", 3, job)
-        self.assertLess(len(self.rows("resumed")["individuals"]), 427, "it was done before it could be interrupted")
+        made = len(self.rows("resumed")["individuals"])
+        self.assertLess(made, EVALUATIONS[name], "it was done before it could be interrupted")
         return job
 
     def test_a_job_with_a_fault_is_not_queued_again(self):
-        pathlib.Path("walk.toml").write_text(EXPERIMENT.replace("evaluations = 427", "evaluation = 427"))
+        text = experiment("walk").read_text()
+        pathlib.Path("walk.toml").write_text(text.replace("evaluations = ", "evaluation = "))
         finished = subprocess.run(["sbatch", "--parsable", "--wait", SCRIPT, "walk.toml", "--out", "none"],
                                   capture_output=True, text=True)
         job = finished.stdout.strip()
@@ -144,23 +158,23 @@ class Runs(unittest.TestCase):
         self.wait_for_restart(job)
         self.wait_for_end(job)
         self.assertIn("ended early", self.printed(job))
-        self.expect_same_rows("resumed")
+        self.expect_same_rows("resumed", "hike")
 
     def test_a_cancelled_job_is_not_queued_again(self):
-        job = self.begin()
+        job = self.begin(name="trek")
         run("scancel", job)
         wait_until(cluster.is_quiet, "nothing of the job is left", cluster.logs)
         self.assertEqual(self.state(job), ("CANCELLED", 0), self.said(job))
 
     def test_options_that_the_script_adds_may_be_given(self):
-        job = self.submit("--wait", "--cpus-per-task=1", SCRIPT, "walk.toml", "--resume", "--threads=1", "--out", "given")
+        job = self.submit("--wait", "--cpus-per-task=1", SCRIPT, experiment("walk"), "--resume", "--threads=1",
+                          "--out", "given")
         self.wait_for_end(job)
         self.expect_same_rows("given")
 
     def test_slurm_sends_that_signal_itself(self):
-        # a minute with a signal that is due two minutes before its end; the run would take hours
-        long = ("--set", "experiment.evaluations=4270003")
-        job = self.submit("--time=1", SCRIPT, "walk.toml", "--out", "long", *long)
+        # a minute with a signal that is due two minutes before its end
+        job = self.submit("--time=1", SCRIPT, experiment("trek"), "--out", "long")
         wait_until(lambda: self.state(job) == ("PENDING", 1), f"job {job} is queued again", lambda: self.said(job))
         self.assertIn("ended early", self.printed(job))
 
@@ -169,14 +183,14 @@ class Runs(unittest.TestCase):
         run("scontrol", "requeue", job)
         self.wait_for_restart(job)
         self.wait_for_end(job)
-        self.expect_same_rows("resumed")
+        self.expect_same_rows("resumed", "hike")
 
     def test_a_preempted_run_goes_on(self):
         job = self.begin("--exclusive", "--nodes=2", "--ntasks=2")
         run("srun", "--partition=urgent", "--exclusive", "--nodes=2", "--ntasks=2", "true")
         self.wait_for_restart(job)
         self.wait_for_end(job)
-        self.expect_same_rows("resumed")
+        self.expect_same_rows("resumed", "hike")
 
     def test_a_run_whose_node_dies_goes_on_elsewhere(self):
         job = self.begin("--nodes=2", "--ntasks=2")
@@ -184,11 +198,11 @@ class Runs(unittest.TestCase):
         self.addCleanup(cluster.wait_for_nodes)
         self.addCleanup(cluster.start_node, "two")
         self.wait_for_restart(job)
-        self.assertLess(len(self.rows("resumed")["individuals"]), 427)
+        self.assertLess(len(self.rows("resumed")["individuals"]), EVALUATIONS["hike"])
         run("scontrol", "update", f"JobId={job}", "NumNodes=1")  # which are left
         self.wait_for_end(job)
         self.assertIn("rank 1 on one", self.printed(job))
-        self.expect_same_rows("resumed")
+        self.expect_same_rows("resumed", "hike")
 
 
 if __name__ == "__main__":

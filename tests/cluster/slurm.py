@@ -23,7 +23,7 @@ NODES = ("one", "two")
 ADDRESSES = {"one": "10.77.0.1", "two": "10.77.0.2"}
 PORTS = {"one": 17001, "two": 17002}
 MOST_PROCESSES = 300  # a cluster that runs a test has less than 100
-PATIENCE = 90.0  # s, for what takes a second or two on an idle machine
+PATIENCE = 300.0  # s, for what takes seconds on an idle machine
 
 CONFIGURATION = """\
 ClusterName=test
@@ -48,7 +48,10 @@ PreemptType=preempt/partition_prio
 PreemptMode=REQUEUE
 GresTypes=gpu
 KillWait=30
-SlurmdTimeout=10
+SlurmdTimeout=30
+MessageTimeout=60
+TCPTimeout=30
+BatchStartTimeout=60
 ReturnToService=2
 {nodes}
 PartitionName=main Nodes=ALL Default=YES MaxTime=INFINITE State=UP PriorityTier=1 GraceTime=120

@@ -23,13 +23,13 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using testing::Process;
 
-/// A run of thirteen generations, each of which takes a few tens of milliseconds.
+/// A run of thirteen generations, each of which takes long enough for a test to interrupt the run after it.
 class Interruption : public ::testing::Test {
  protected:
   testing::Scratch scratch_;
   std::string file_ = scratch_.write("small.toml", testing::small_experiment);
 
-  std::vector<std::string> run_command(const std::string& folder) const {
+  std::vector<std::string> run_command(const std::string& folder, const std::string& window = "30") const {
     return {EVODEVO_PROGRAM,
             "run",
             file_,
@@ -38,9 +38,9 @@ class Interruption : public ::testing::Test {
             "--set",
             "experiment.evaluations=75",
             "--set",
-            "fitness.0.window=1",
+            "fitness.0.window=" + window,
             "--set",
-            "fitness.1.window=1"};
+            "fitness.1.window=" + window};
   }
   std::vector<std::string> resume_command(const std::string& folder) const {
     return {EVODEVO_PROGRAM, "resume", (scratch_ / folder).string()};
@@ -82,10 +82,9 @@ TEST_F(Interruption, ByTheClockEndsVerifiedAndGoesOnAsIfItHadNotBeen) {
   ASSERT_GE(generations, 1u);
   EXPECT_TRUE(limited.verification(limited.best(1).front())) << ended.output;
 
-  const testing::Finished straight =
-      testing::run({EVODEVO_PROGRAM, "run", file_, "--no-report", "--out", (scratch_ / "straight").string(), "--set",
-                    "experiment.evaluations=" + std::to_string(6 * generations), "--set", "fitness.0.window=1", "--set",
-                    "fitness.1.window=1"});
+  command = run_command("straight");
+  command.insert(command.end(), {"--no-report", "--set", "experiment.evaluations=" + std::to_string(6 * generations)});
+  const testing::Finished straight = testing::run(command);
   ASSERT_EQ(straight.exit_code, 0) << straight.output;
   testing::expect_same_runs(Archive::read(scratch_ / "straight"), limited);
 }
@@ -109,7 +108,7 @@ std::int64_t refused_elders(const Archive& archive) {
 /// With this selection all parents die, so that elders come to the front whom nobody has verified yet.
 TEST_F(Interruption, ARunThatVerifiesItsFrontIsTheSameAfterKillsAndWithAnyThreads) {
   const auto verifying = [&](const std::string& folder, const std::string& threads) {
-    std::vector<std::string> command = run_command(folder);
+    std::vector<std::string> command = run_command(folder, "1");
     command.insert(command.end(),
                    {"--set", "selection.name=comma", "--set", "experiment.verify_front=true", "--threads", threads});
     return command;
