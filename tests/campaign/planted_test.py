@@ -130,7 +130,7 @@ class Sources(unittest.TestCase):
                 self.assertEqual(self.planted(text), {})
 
 
-@unittest.skipUnless(CAN_TRY, "this system does not allow `unshare --pid`")
+@unittest.skipUnless(CAN_TRY, "there is no git, setpriv or unshare, or this system does not allow `unshare --pid`")
 class Sittings(unittest.TestCase):
     maxDiff = None
 

@@ -4,7 +4,7 @@ import { execFileSync, spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, readdirSync, readFileSync, rmdirSync, symlinkSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { chromiumProgram, cycles, cycleTime, differing, evodevo, experimentName, inPage, launch, opened, picture, Scratch, sum } from "./support.mjs";
+import { barrenRun, chromiumProgram, cycles, cycleTime, differing, evodevo, experimentName, inPage, launch, opened, picture, Scratch, sum } from "./support.mjs";
 
 const scratch = new Scratch();
 let browser;
@@ -191,11 +191,7 @@ test("a snap, which could not read the pages, is no browser", () => {
 });
 
 test("a robot that never lived cannot be filmed, and is left out of a gallery's picture", () => {
-  const run = scratch.path("barren");
-  const file = scratch.path("barren.toml");
-  writeFileSync(file, readFileSync(scratch.file, "utf8").replace("stiffness = 3000", "stiffness = 0"));
-  const soft = ["muscle", "muscle2", "tissue", "bone"].flatMap((name) => ["--set", `materials.${name}.stiffness=0`]);
-  evodevo("run", file, "--out", run, ...soft);
+  const { run, file, soft } = barrenRun(scratch);
   for (const options of [["--out", "none.png"], ["--at", "1", "--out", "none.png"], ["--out", "none.mp4"]]) {
     const words = ["film", run, "--individual", "0", ...options.map((word) => (word.includes(".") ? scratch.path(word) : word))];
     const { status, stderr } = spawnSync(process.env.EVODEVO_PROGRAM, words, { encoding: "utf8" });

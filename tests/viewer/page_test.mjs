@@ -1,11 +1,12 @@
 // The report's page, in a browser.
 import assert from "node:assert/strict";
-import { cpSync, readFileSync, statSync, writeFileSync } from "node:fs";
+import { cpSync, statSync } from "node:fs";
 import { pathToFileURL } from "node:url";
 import { after, before, test } from "node:test";
 import {
   amber,
   archived,
+  barrenRun,
   cycles,
   cycleTime,
   differing,
@@ -407,11 +408,7 @@ test("several runs give one page that compares them", async () => {
 });
 
 test("where nothing ended with a fitness, charts say so", async () => {
-  const run = scratch.path("barren");
-  const file = scratch.path("barren.toml");
-  writeFileSync(file, readFileSync(scratch.file, "utf8").replace("stiffness = 3000", "stiffness = 0"));
-  const soft = ["muscle", "muscle2", "tissue", "bone"].flatMap((name) => ["--set", `materials.${name}.stiffness=0`]);
-  evodevo("run", file, "--out", run, ...soft);
+  const { run } = barrenRun(scratch);
   evodevo("report", run, "--individual", "0", "--out", scratch.path("barren.html"));
   const barren = await opened(browser, scratch.path("barren.html"));
   assert.equal(await barren.getByText("no individual has ended with a fitness").count(), 3);

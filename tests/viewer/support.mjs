@@ -71,6 +71,17 @@ export function evodevo(...words) {
   return execFileSync(process.env.EVODEVO_PROGRAM, words, { encoding: "utf8", maxBuffer: 1 << 28 });
 }
 
+/** Makes a run of robots that never live, since they have no springs. Returns its folder, its experiment, and the options
+ * that make the springs of the experiment's other materials vanish. */
+export function barrenRun(scratch) {
+  const run = scratch.path("barren");
+  const file = scratch.path("barren.toml");
+  writeFileSync(file, readFileSync(scratch.file, "utf8").replace("stiffness = 3000", "stiffness = 0"));
+  const soft = ["muscle", "muscle2", "tissue", "bone"].flatMap((name) => ["--set", `materials.${name}.stiffness=0`]);
+  evodevo("run", file, "--out", run, ...soft);
+  return { run, file, soft };
+}
+
 /** Returns the result of an SQL query in a run's archive, without using evodevo. */
 export function archived(folder, query) {
   const program =

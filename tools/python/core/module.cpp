@@ -122,8 +122,9 @@ sample_hz   the number of samples for each second, Hz; 0 for none. The first is 
 sampled     names of quantities of samples: "centre", "positions", "velocities", "forces"
 
 The motion is bit-identical to that of `evodevo simulate` with the same build, device, body and settings. Other Python
-threads run in the meantime, and Ctrl-C ends it only when all bodies are done. Raises ValueError with the place, the value and a remedy if an argument cannot be used,
-MemoryError if a GPU has too little memory for one body, and RuntimeError if the device fails.)");
+threads run in the meantime, and Ctrl-C ends it only when all bodies are done. Raises ValueError with the place, the
+value and a remedy if an argument cannot be used, MemoryError if a GPU has too little memory for one body, and
+RuntimeError if the device fails.)");
 }
 
 }  // namespace evodevo::python
