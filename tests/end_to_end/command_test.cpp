@@ -465,6 +465,8 @@ TEST_F(Command, UsageErrors) {
   EXPECT_THAT(evodevo({"conform"}).output, testing::naming("LIBRARY", "missing", "usage: evodevo conform LIBRARY"));
   EXPECT_EQ(evodevo({"run", file_, "--sead", "3"}).exit_code, 2);
   EXPECT_THAT(evodevo({"run", file_, "--sead", "3"}).output, testing::naming("--sead", "did you mean \"--seed\"?"));
+  EXPECT_THAT(evodevo({"show", "runs/small-1", "--individual", "best"}).output,
+              testing::naming("'best'", "--individual ID: show this individual"));
   EXPECT_THAT(evodevo({"check", file_, "--set", "simulation.dt=0.0003"}).output,
               testing::naming("development.cycle_time", "the nearest one is 0.0501 s", "simulation.dt"));
   EXPECT_THAT(evodevo({"run", file_, "--set", "seed"}).output, AllOf(HasSubstr("--set seed"), HasSubstr("key=value")));

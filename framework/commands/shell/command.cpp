@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 
@@ -76,6 +77,18 @@ std::string value_name_of(const po::option_description& option) {
   return name.substr(0, name.find(" (="));
 }
 
+namespace {
+
+/// Returns a note such as "; --seed N: seed of all random numbers" on the option with a name such as "--seed".
+std::string meaning_of(const std::string& name, const Options& options) {
+  const po::option_description* option =
+      options.find_nothrow(name.substr(std::min(name.size(), std::size_t{2})), false);
+  if (option == nullptr) return "";
+  return "; " + name + " " + value_name_of(*option) + ": " + option->description();
+}
+
+}  // namespace
+
 Given parse(const Command& command, const Arguments& arguments) {
   Options all;
   all.add(command.options).add(common_options());
@@ -96,6 +109,8 @@ Given parse(const Command& command, const Arguments& arguments) {
     const std::string near = nearest(error.get_option_name(), known);
     throw UsageError(printable(error.what()) + (near.empty() ? "" : "; did you mean \"" + near + "\"?") +
                      usage_note(command));
+  } catch (const po::validation_error& error) {
+    throw UsageError(printable(error.what()) + meaning_of(error.get_option_name(), all) + usage_note(command));
   } catch (const po::error& error) {
     throw UsageError(printable(error.what()) + usage_note(command));
   }
