@@ -153,33 +153,35 @@ TEST_P(OnRoughGround, FrictionHoldsAMassInsideTheConeAndOnlyThere) {
 struct Slide {
   double start;        ///< velocity along the ground, m/s; negative if the mass moves up
   double coefficient;  ///< of friction, 1
-  double duration = 0.05;
 
   /// The velocity along the ground in the end, down the slope, m/s.
   double end(const Arithmetic& arithmetic) const {
-    const Scene scene{Gravity{}, Floor{1e4, 1.5, 20, 3}, Friction{coefficient}, {}, {}};
-    const auto here = ground(*scene.floor, x, y);
-    const double depth = mass * g / (scene.floor->stiffness * physics::normal_squared(here));
+    const Scene scene{Gravity{}, hills(), Friction{coefficient}, {}, {}};
+    const auto here = ground(hills(), x, y);
+    const double depth = mass * g / (hills().stiffness * physics::normal_squared(here));
     const Body body = single_mass(mass, {x, y, here.height - depth});
     const double slope = std::hypot(here.slope_x, here.slope_y);
     const Vec3 down{-here.slope_x / slope, -here.slope_y / slope, -slope};
     State state = resting(body, scene);
     state.velocity[0] = start / norm(down) * down;
     const auto [method, precision] = arithmetic;
-    const Answer a = simulate(body, state, scene, {method, precision, 0.0005}, std::lround(duration / 0.0005));
+    const Answer a = simulate(body, state, scene, {method, precision, dt}, steps);
     EXPECT_EQ(a.task.status, Status::ok) << a.task.reason;
     return dot(a.state.velocity[0], down) / norm(down);
   }
 
   /// The same of a block on an inclined plane, as long as it does not stop.
   double expected() const {
-    const auto here = ground(Floor{1e4, 1.5, 20, 3}, x, y);
+    const auto here = ground(hills(), x, y);
     const double angle = std::atan(std::hypot(here.slope_x, here.slope_y)), direction = start < 0 ? -1 : 1;
-    return start + g * (std::sin(angle) - direction * coefficient * std::cos(angle)) * duration;
+    return start + g * (std::sin(angle) - direction * coefficient * std::cos(angle)) * dt * steps;
   }
 
  private:
-  static constexpr double mass = 0.2, x = 6.7, y = 4.4;  // kg, m, m; the slope is 0.30
+  static Floor hills() { return {1e4, 1.5, 20, 3}; }
+  static constexpr double mass = 0.2, x = 6.7, y = 4.4;  // kg, m, m; the slope there is 0.30
+  static constexpr double dt = 0.0005;                   // s
+  static constexpr int steps = 100;
 };
 
 TEST_P(OnRoughGround, FrictionSlowsDownAMassAsOnAnInclinedPlane) {
