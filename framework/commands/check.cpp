@@ -57,13 +57,11 @@ std::string range_text(double low, double high) {
   return from == to ? from : from + " to " + to;
 }
 
-bool is_slope(const Scene& scene) { return scene.gravity && scene.gravity->slope != 0; }
-
 /// Returns a text such as "0.24 m/s" or, on a slope, "0.3 m/s downhill, and 0.2 m/s uphill,".
 std::string top_speed_text(const Scene& scene) {
   const auto [uphill, downhill] = std::minmax({top_speed(scene, -1), top_speed(scene, 1)});
   const std::string fastest = short_number(downhill) + " m/s";
-  if (!is_slope(scene)) return fastest;
+  if (!scene.on_slope()) return fastest;
   return fastest + " downhill, and " + (uphill > 0 ? short_number(uphill) + " m/s" : "nothing") + " uphill,";
 }
 
@@ -78,7 +76,7 @@ void print_top_speed(const Scene& scene, const std::vector<double>& lengths, dou
   std::cout << "friction keeps up at most " << top_speed_text(scene) << " against the damping";
   if (!lengths.empty()) {
     const double low = fastest / lengths.back(), high = fastest / lengths.front();
-    std::cout << (is_slope(scene) ? ": downhill " : ": ") << range_text(low, high) << " body lengths per second, ";
+    std::cout << (scene.on_slope() ? ": downhill " : ": ") << range_text(low, high) << " body lengths per second, ";
     if (window > 0)
       std::cout << "or " << range_text(low * window, high * window) << " in the window of " << short_number(window)
                 << " s, ";

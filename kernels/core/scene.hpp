@@ -52,6 +52,7 @@ struct Friction {
 
   /// The coefficient that holds a mass at rest, 1.
   double holding() const { return static_coefficient.value_or(coefficient); }
+  bool higher_at_rest() const { return holding() > coefficient; }
 
   bool operator==(const Friction&) const = default;
 };
@@ -74,6 +75,8 @@ struct Scene {
   std::optional<Friction> friction;  ///< acts only in a scene with a floor
   std::optional<Damping> damping;
   std::optional<Drag> drag;
+
+  bool on_slope() const { return gravity && gravity->slope != 0; }
 
   bool operator==(const Scene&) const = default;
 };

@@ -114,8 +114,8 @@ template <class T, class V>
 HWY_INLINE void rub(const cpu::StepConstants<T>& constants, const Ground<V>& ground, V push, Triple<V>& v) {
   const hn::ScalableTag<T> d;
   if (!constants.friction) return;
-  v = after_friction(ground, v, push, hn::Set(d, constants.friction_coefficient),
-                     hn::Set(d, constants.static_coefficient));
+  const T at_rest = constants.static_friction ? constants.static_coefficient : 0;
+  v = after_friction(ground, v, push, hn::Set(d, constants.friction_coefficient), hn::Set(d, at_rest));
 }
 
 /// Lets a rigid floor and its friction act on the velocities that all other forces have given the masses in a step.

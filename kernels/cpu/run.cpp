@@ -24,12 +24,12 @@ template <class T>
 StepConstants<T> step_constants(const Scene& scene, double dt) {
   const auto as_t = [](double value) { return static_cast<T>(value); };
   return {.gravity = scene.gravity.has_value(),
-          .slope = scene.gravity && scene.gravity->slope != 0,
+          .slope = scene.on_slope(),
           .floor = scene.floor.has_value(),
           .rigid = scene.floor && scene.floor->rigid(),
           .rough = scene.floor && scene.floor->rough(),
           .friction = scene.friction && scene.floor,
-          .static_friction = scene.friction && scene.friction->holding() > scene.friction->coefficient,
+          .static_friction = scene.friction && scene.friction->higher_at_rest(),
           .drag = scene.drag.has_value(),
           .damping = scene.damping.has_value(),
           .acceleration = as_t(scene.gravity ? scene.gravity->downwards() : 0),

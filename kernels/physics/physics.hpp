@@ -348,7 +348,8 @@ EVODEVO_HD T kept_unless_held(T vx, T vy, T held, T kept) {
 }
 
 /// The velocity (m/s) of a mass after the friction of the floor has acted on its part along the ground. `push` is the
-/// velocity that the floor has added along its unit normal, N dt/m (m/s).
+/// velocity that the floor has added along its unit normal, N dt/m (m/s). `static_coefficient` may be 0 if it is not
+/// higher than `coefficient`, since the friction of sliding then stops every mass that it would hold.
 template <class T>
 EVODEVO_HD Triple<T> after_friction(const Ground<T>& ground, const Triple<T>& v, T push, T coefficient,
                                     T static_coefficient) {

@@ -9,6 +9,7 @@
 
 #include "evolution/breeding.hpp"
 #include "life/evaluation.hpp"
+#include "support/channels.hpp"
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
 
@@ -103,13 +104,12 @@ INSTANTIATE_TEST_SUITE_P(Ways, Observing,
                          });
 
 TEST_P(Observing, ChangesNoLife) {
-  constexpr Channels everything{true, true, true, true, true, true, true, true};
   const Request first{.settle = 0.0511, .window = 0.1001, .work = true, .rate = 250, .channels = {.contact = true}};
   Experiment plain = experiment(), watched = experiment();
   spy_on(plain, Spy(first));
   spy_on(watched, Spy(first), Spy({.settle = 0.0133, .window = 0.0417, .work = true}),
-         Spy({.settle = 0, .window = 0.1512, .rate = 333, .channels = everything}),
-         Spy({.settle = 0.0007, .window = 0.1331, .cycle = 0, .rate = 97, .channels = everything}),
+         Spy({.settle = 0, .window = 0.1512, .rate = 333, .channels = test::all_channels}),
+         Spy({.settle = 0.0007, .window = 0.1331, .cycle = 0, .rate = 97, .channels = test::all_channels}),
          Spy({.settle = 0, .window = 0.0701, .work = true, .cycle = 1, .rate = 1000, .channels = {.contact = true}}));
   expect_same_life(lived(plain), lived(watched));
 }

@@ -16,6 +16,7 @@
 
 #include "batch.hpp"
 #include "cpu/simulator.hpp"
+#include "support/channels.hpp"
 #ifdef EVODEVO_CUDA
 #include "cuda/runtime/cuda_simulator.hpp"
 #endif
@@ -74,7 +75,7 @@ std::string difference(const Answer& a, const Answer& b) {
 std::vector<SamplePoint> points_of(const Life& life) {
   std::vector<SamplePoint> points;
   for (const std::uint64_t step : {std::uint64_t{0}, life.steps / 3, life.steps / 3, life.steps})
-    points.push_back({step, {true, true, true, true, true, true, true, true}});
+    points.push_back({step, all_channels});
   return points;
 }
 

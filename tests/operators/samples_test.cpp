@@ -10,13 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "evodevo/channels.hpp"
+#include "support/channels.hpp"
 #include "support/messages.hpp"
 
 namespace evodevo::test {
 namespace {
-
-constexpr Channels everything{true, true, true, true, true, true, true, true};
 
 /// Two samples, 0.25 s apart, of a body of two masses and one spring. A third mass comes in between.
 class TwoSamples : public ::testing::Test {
@@ -56,7 +54,7 @@ class TwoSamples : public ::testing::Test {
 };
 
 TEST_F(TwoSamples, CountTimeWorkAndContactFromTheWindowOrTheSampleBefore) {
-  const Samples samples = seen(everything);
+  const Samples samples = seen(all_channels);
   ASSERT_EQ(samples.size(), 2u);
   EXPECT_EQ(samples.time(0), 0);
   EXPECT_EQ(samples.time(1), 0.25);
@@ -106,7 +104,7 @@ TEST_F(TwoSamples, RefuseWhatNobodyAskedFor) {
       {"forces", &Channels::forces, [](const Samples& s) { s.force(0, 0); }},
   };
   for (const auto& [name, channel, read] : all) {
-    Channels others = everything;
+    Channels others = all_channels;
     others.*channel = false;
     EXPECT_THAT(refusal([&] { read(seen(others)); }), testing::naming("\"" + name + "\"", "Request::channels." + name));
     Channels alone;
@@ -120,7 +118,7 @@ TEST_F(TwoSamples, RefuseWhatNobodyAskedFor) {
 }
 
 TEST_F(TwoSamples, RefuseWhatIsNotThere) {
-  const Samples samples = seen(everything);
+  const Samples samples = seen(all_channels);
   EXPECT_THAT(refusal([&] { samples.time(2); }), testing::naming("sample 2", "only 2"));
   EXPECT_THAT(refusal([&] { samples.centre(2); }), testing::naming("sample 2", "only 2"));
   EXPECT_THAT(refusal([&] { samples.position(0, 2); }), testing::naming("mass 2", "only 2"));

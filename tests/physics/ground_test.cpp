@@ -78,6 +78,24 @@ TEST(Ground, OfOneSeedIsNotThatOfAnotherMoved) {
               << seed << " " << other << " " << right << " " << behind;
 }
 
+TEST(Ground, FrictionThatIsNotHigherAtRestNeedsNoSecondCoefficient) {
+  constexpr float coefficient = 0.7f;
+  int held = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const auto number = [&](double factor, double range) {
+      return static_cast<float>(std::fmod(factor * i, 2 * range) - range);
+    };
+    const physics::Ground<float> here{0, number(0.618034, 0.4), number(0.754878, 0.4)};
+    const physics::Triple<float> v{number(0.569840, 1), number(0.819173, 1), number(0.471043, 1)};
+    const float push = i % 10 == 0 ? 0 : std::abs(number(0.324718, 2));
+    const auto after = [&](float at_rest) { return physics::after_friction(here, v, push, coefficient, at_rest); };
+    const auto same = after(coefficient), none = after(0), higher = after(2 * coefficient);
+    EXPECT_TRUE(same.x == none.x && same.y == none.y && same.z == none.z) << i;
+    held += higher.x != none.x;
+  }
+  EXPECT_GT(held, 2000) << "a higher coefficient must make a difference";
+}
+
 TEST(Ground, ABodyIsBornOnIt) {
   const Scene scene{Gravity{}, rough_floor(), {}, {}, {}};
   const State state = state_at_birth(random_body(100, 8, 5, 2), scene);

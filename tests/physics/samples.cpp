@@ -8,6 +8,7 @@
 #include "analysis/ground.hpp"
 #include "analysis/sampling.hpp"
 #include "core/piecewise.hpp"
+#include "support/channels.hpp"
 
 namespace evodevo::test {
 namespace {
@@ -15,7 +16,6 @@ namespace {
 constexpr double dt = 0.0007;  // s
 constexpr std::uint64_t steps = 457;
 constexpr Recording everything{true, true, true, true, true};
-constexpr Channels all_channels{true, true, true, true, true, true, true, true};
 
 std::vector<Channels> single_channels() {
   return {{.centre = true},    {.box = true},        {.contact = true},  {.work = true},

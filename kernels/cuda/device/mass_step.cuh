@@ -206,9 +206,11 @@ __device__ __forceinline__ void damp(Number decay, Moving& m) {
 /// Reduces a velocity by the friction of a floor that has added `push` (m/s) along its unit normal.
 __device__ __forceinline__ void rub(const StepConstants<Number>& constants, const physics::Ground<Number>& ground,
                                     Number push, Vector& velocity) {
-  if constexpr (friction)
-    velocity =
-        physics::after_friction(ground, velocity, push, constants.friction_coefficient, constants.static_coefficient);
+  if constexpr (friction) {
+    Number at_rest = 0;
+    if constexpr (static_friction) at_rest = constants.static_coefficient;
+    velocity = physics::after_friction(ground, velocity, push, constants.friction_coefficient, at_rest);
+  }
 }
 
 /// Reduces a velocity by the friction of an elastic floor, which acts for `part` of the step (1). On rough ground,
@@ -222,16 +224,16 @@ __device__ __forceinline__ void apply_friction(const StepConstants<Number>& cons
       const auto ground = ground_under(constants, m.position);
       const Number up = constants.dt * part * m.normal_force * m.inverse_mass;
       rub(constants, ground, up * physics::square_root(physics::normal_squared(ground)), velocity);
-    } else {
-      Number kept = physics::friction_factor(velocity.x, velocity.y,
-                                             constants.friction_dt * part * m.normal_force * m.inverse_mass);
-      if constexpr (static_friction) {
-        const Number held = constants.static_coefficient * (constants.dt * part) * m.normal_force * m.inverse_mass;
-        kept = physics::kept_unless_held(velocity.x, velocity.y, held, kept);
-      }
-      velocity.x *= kept;
-      velocity.y *= kept;
+      return;
     }
+    Number kept = physics::friction_factor(velocity.x, velocity.y,
+                                           constants.friction_dt * part * m.normal_force * m.inverse_mass);
+    if constexpr (static_friction) {
+      const Number held = constants.static_coefficient * (constants.dt * part) * m.normal_force * m.inverse_mass;
+      kept = physics::kept_unless_held(velocity.x, velocity.y, held, kept);
+    }
+    velocity.x *= kept;
+    velocity.y *= kept;
   }
 }
 
