@@ -2,9 +2,15 @@
 # Runs the README's first command in a clean copy of the working tree, as a new user would. Continuous integration runs
 # the second command, tools/test, in a clean clone.
 #
-#   readme_run.sh SOURCE_FOLDER
+#   readme_run.sh SOURCE_FOLDER [BUILD_FOLDER]
+#
+# With BUILD_FOLDER, the copy uses what tools/test has built there, instead of building it once more.
 set -euo pipefail
-source=$1
+source=$1 build=${2:-}
+if [ -n "$build" ] && [ ! -e "$build/.configured" ]; then
+  echo "skipped: $build was not set up by tools/test"
+  exit 77
+fi
 command='tools/evodevo run experiments/quickstart.toml'
 grep -qxF "$command" "$source/README.md" || { echo "README.md does not name the command: $command"; exit 1; }
 
@@ -25,6 +31,11 @@ tar -C "$source" "${without[@]}" -cf - . | tar -C "$copy" -xf -
 
 cd "$copy"
 unset EVODEVO_PRESET EVODEVO_COMMAND
+if [ -n "$build" ]; then
+  export EVODEVO_PRESET=${build##*/}
+  mkdir build
+  ln -s "$build" build/
+fi
 output=$(bash -c "$command" 2>&1) || { echo "$output"; exit 1; }
 echo "$output" | tail -n 8
 grep -q '^quickstart on cpu\|^quickstart on cuda' <<<"$output" || { echo "it does not say which device it uses"; exit 1; }

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Runs the commands of the README's section "Ten minutes to an operator of your own", starting with the installation of
-# evodevo. The test ReadmeRun covers the preceding commands.
+# evodevo. The tests ReadmeRun.built and ReadmeRun.clean cover the preceding commands.
 #
 #   readme_tutorial.sh SOURCE_FOLDER BUILD_FOLDER
 set -euo pipefail

@@ -1,6 +1,7 @@
 #include "evolution/archive/archive.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -89,8 +90,8 @@ std::optional<Journal> recorded_wish(const Archive& archive) {
   if (!wish) return std::nullopt;
   const auto journal = journal_named(*wish);
   if (!journal)
-    archive.refuse(std::string("its entry \"") + journal_key + "\" is \"" + printable(*wish) +
-                   "\", expected \"wal\" or \"delete\"");
+    archive.refuse(fmt::format("its entry \"{}\" is \"{}\", expected \"wal\" or \"delete\"", journal_key,
+                               printable(*wish)));
   return journal;
 }
 
