@@ -1,11 +1,15 @@
 // Messages between the processes of a run. MPI carries them (mpi/mpi_channel.cpp); tests use threads of one process.
 #pragma once
 
+#include <chrono>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace evodevo {
+
+constexpr std::chrono::microseconds between_looks{500};  ///< at the channel
+constexpr std::chrono::seconds between_beats{1};         ///< with which a rank says that it is there
 
 /// A message, and the rank that sent it.
 struct Received {

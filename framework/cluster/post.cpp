@@ -5,8 +5,6 @@
 namespace evodevo {
 namespace {
 
-constexpr std::chrono::microseconds between_looks{500};  // at the channel
-constexpr std::chrono::seconds between_beats{1};
 constexpr int setup_patience = 4;  // ranks may load operators from a slow file system
 
 }  // namespace

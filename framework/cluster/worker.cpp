@@ -135,9 +135,6 @@ class Silence {
   Clock::time_point last_ = Clock::now();
 };
 
-constexpr std::chrono::microseconds between_looks{500};  // at the channel
-constexpr std::chrono::seconds between_beats{1};
-
 /// Whether a message ends the run. If so, the ranks that it names are given up.
 bool ends_run(const Received& received, Channel& channel) {
   if (message::kind_of(received.bytes) != message::Kind::end) return false;

@@ -26,8 +26,6 @@ SampleGenomes genomes_for(const Subject& subject, const Selection& op, std::uint
   return {layout, [layout](Rng& rng) { return random_genome(layout, rng); }};
 }
 
-void append(Numbers& numbers, const Numbers& more) { numbers.insert(numbers.end(), more.begin(), more.end()); }
-
 }  // namespace
 
 void SampleTable::set_titles(const Subject& subject, const Selection& op, std::uint32_t input) {

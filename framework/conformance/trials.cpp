@@ -18,8 +18,9 @@ namespace {
 
 using conformance::numbers_of;  // which the overloads below would otherwise hide
 
+using conformance::append;
+
 void append(Numbers& numbers, std::initializer_list<double> more) { numbers.insert(numbers.end(), more); }
-void append(Numbers& numbers, const Numbers& more) { numbers.insert(numbers.end(), more.begin(), more.end()); }
 void append(Numbers& numbers, Vec3 v) { append(numbers, {v.x, v.y, v.z}); }
 
 void append(Numbers& numbers, const Material& m) {

@@ -14,6 +14,8 @@ namespace evodevo::conformance {
 
 using Numbers = std::vector<double>;
 
+inline void append(Numbers& numbers, const Numbers& more) { numbers.insert(numbers.end(), more.begin(), more.end()); }
+
 /// Returns whether both lists have the same bits, so that NaN equals itself.
 bool same(const Numbers& a, const Numbers& b);
 

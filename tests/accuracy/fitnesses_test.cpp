@@ -11,7 +11,7 @@
 #include "support/messages.hpp"
 #include "support/scratch.hpp"
 
-namespace evodevo::tools::accuracy {
+namespace evodevo::tools::accuracy::EVODEVO_FILE {
 namespace {
 
 TEST(Fitnesses, AreThoseOfAnEvaluation) {
@@ -76,4 +76,4 @@ TEST(Fitnesses, OfWhatDivergesAreNoNumbers) {
 }
 
 }  // namespace
-}  // namespace evodevo::tools::accuracy
+}  // namespace evodevo::tools::accuracy::EVODEVO_FILE

@@ -10,22 +10,22 @@
 #include "analysis/stability.hpp"
 #include "simulation.hpp"
 
-namespace evodevo::tools::accuracy {
+namespace evodevo::tools::accuracy::EVODEVO_FILE {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-std::string test_name(const testing::TestParamInfo<Method>& info) {
+std::string test_name(const ::testing::TestParamInfo<Method>& info) {
   std::string text(name(info.param));
   std::replace(text.begin(), text.end(), '-', '_');
   return text;
 }
 
-class Limits : public testing::TestWithParam<Method> {};
+class Limits : public ::testing::TestWithParam<Method> {};
 
 INSTANTIATE_TEST_SUITE_P(ExplicitMethods, Limits,
-                         testing::Values(Method::paper_euler, Method::symplectic_euler, Method::velocity_verlet,
-                                         Method::rk4),
+                         ::testing::Values(Method::paper_euler, Method::symplectic_euler, Method::velocity_verlet,
+                                           Method::rk4),
                          test_name);
 
 TEST_P(Limits, WithoutDampingIsThatOfTheDocumentation) {
@@ -105,4 +105,4 @@ TEST(ContactGain, IsALossForMethodsThatDamp) {
 }
 
 }  // namespace
-}  // namespace evodevo::tools::accuracy
+}  // namespace evodevo::tools::accuracy::EVODEVO_FILE

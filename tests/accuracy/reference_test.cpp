@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace evodevo::tools::accuracy {
+namespace evodevo::tools::accuracy::EVODEVO_FILE {
 namespace {
 
 Body single_mass(double mass) {
@@ -64,4 +64,4 @@ TEST(Reference, FrictionIsRefused) {
 }
 
 }  // namespace
-}  // namespace evodevo::tools::accuracy
+}  // namespace evodevo::tools::accuracy::EVODEVO_FILE

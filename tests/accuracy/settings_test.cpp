@@ -7,10 +7,10 @@
 #include "../common/help.hpp"
 #include "studies.hpp"
 
-namespace evodevo::tools::accuracy {
+namespace evodevo::tools::accuracy::EVODEVO_FILE {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 std::string complaint(const CommandLine& line) { return complaint_about(parse, line); }
 
@@ -18,7 +18,7 @@ TEST(AccuracySettings, NameTheCommandThatRepeatsThem) {
   const Settings settings = parse({"charts", "--quick", "--study", "orders", "--study", "beam"});
   EXPECT_EQ(settings.command, "tools/accuracy charts --quick --study orders --study beam");
   EXPECT_EQ(settings.folder, "charts");
-  EXPECT_THAT(settings.studies, testing::ElementsAre("orders", "beam"));
+  EXPECT_THAT(settings.studies, ::testing::ElementsAre("orders", "beam"));
   EXPECT_EQ(parse({"charts"}).studies.size(), studies.size());
 }
 
@@ -38,4 +38,4 @@ TEST(AccuracySettings, AreDescribedByTheHelp) {
 }
 
 }  // namespace
-}  // namespace evodevo::tools::accuracy
+}  // namespace evodevo::tools::accuracy::EVODEVO_FILE

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-namespace evodevo::tools::accuracy {
+namespace evodevo::tools::accuracy::EVODEVO_FILE {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -64,4 +64,4 @@ TEST(BestFound, IsChanceForWhatTellsNothing) {
 }
 
 }  // namespace
-}  // namespace evodevo::tools::accuracy
+}  // namespace evodevo::tools::accuracy::EVODEVO_FILE

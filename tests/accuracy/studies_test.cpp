@@ -7,7 +7,7 @@
 
 #include "scenes.hpp"
 
-namespace evodevo::tools::accuracy {
+namespace evodevo::tools::accuracy::EVODEVO_FILE {
 namespace {
 
 Settings quick() {
@@ -97,4 +97,4 @@ TEST(Energies, AreKeptByTheSymplecticMethodsAlone) {
 }
 
 }  // namespace
-}  // namespace evodevo::tools::accuracy
+}  // namespace evodevo::tools::accuracy::EVODEVO_FILE

@@ -7,7 +7,7 @@
 #include "support/experiments.hpp"
 #include "support/scratch.hpp"
 
-namespace evodevo::tools::bench {
+namespace evodevo::tools::bench::EVODEVO_FILE {
 namespace {
 
 TEST(HostWork, IsCountedByStage) {
@@ -37,4 +37,4 @@ TEST(HostWork, IsCountedByStage) {
 }
 
 }  // namespace
-}  // namespace evodevo::tools::bench
+}  // namespace evodevo::tools::bench::EVODEVO_FILE

@@ -5,7 +5,7 @@
 
 #include "studies.hpp"
 
-namespace evodevo::tools::bench {
+namespace evodevo::tools::bench::EVODEVO_FILE {
 namespace {
 
 TEST(Numbers, DoublesTheBodiesFromRowToRow) {
@@ -20,4 +20,4 @@ TEST(Numbers, DoublesTheBodiesFromRowToRow) {
 }
 
 }  // namespace
-}  // namespace evodevo::tools::bench
+}  // namespace evodevo::tools::bench::EVODEVO_FILE

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace evodevo::tools::bench {
+namespace evodevo::tools::bench::EVODEVO_FILE {
 namespace {
 
 constexpr std::uint32_t springs = 14230, groups = 256, tallies = 100 * groups;
@@ -51,4 +51,4 @@ TEST(Permutation, PutsSpringsThatWereInOneGroupIntoOthers) {
 }
 
 }  // namespace
-}  // namespace evodevo::tools::bench
+}  // namespace evodevo::tools::bench::EVODEVO_FILE

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace evodevo::tools::bench {
+namespace evodevo::tools::bench::EVODEVO_FILE {
 namespace {
 
 TEST(Report, IsATableWithItsConditionsAndItsCommand) {
@@ -38,4 +38,4 @@ TEST(Bodies, CubeIsThePapers) {
 }
 
 }  // namespace
-}  // namespace evodevo::tools::bench
+}  // namespace evodevo::tools::bench::EVODEVO_FILE

@@ -8,10 +8,10 @@
 
 #include "../common/help.hpp"
 
-namespace evodevo::tools::bench {
+namespace evodevo::tools::bench::EVODEVO_FILE {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 std::string complaint(const CommandLine& line) { return complaint_about(parse, line); }
 
@@ -55,4 +55,4 @@ TEST(Settings, AreDescribedByTheHelp) {
 }
 
 }  // namespace
-}  // namespace evodevo::tools::bench
+}  // namespace evodevo::tools::bench::EVODEVO_FILE

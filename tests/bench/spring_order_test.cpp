@@ -9,7 +9,7 @@
 
 #include "common/bodies.hpp"
 
-namespace evodevo::tools::bench {
+namespace evodevo::tools::bench::EVODEVO_FILE {
 namespace {
 
 /// Returns the share of full warps in which no two springs share a mass.
@@ -51,4 +51,4 @@ TEST(SpringOrder, SpreadsSpringsSoThatThoseOfAWarpShareNoMass) {
 }
 
 }  // namespace
-}  // namespace evodevo::tools::bench
+}  // namespace evodevo::tools::bench::EVODEVO_FILE

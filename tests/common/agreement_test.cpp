@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace evodevo::tools {
+namespace evodevo::tools::EVODEVO_FILE {
 namespace {
 
 const std::vector<double> truth{5, 1, 4, 2, 3, 0};
@@ -27,4 +27,4 @@ TEST(ShareFound, SharesTheRoomAmongEquals) {
 }
 
 }  // namespace
-}  // namespace evodevo::tools
+}  // namespace evodevo::tools::EVODEVO_FILE

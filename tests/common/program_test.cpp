@@ -6,10 +6,10 @@
 
 #include <stdexcept>
 
-namespace evodevo::tools {
+namespace evodevo::tools::EVODEVO_FILE {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr Program program{"some", "the page\n"};
 
@@ -69,4 +69,4 @@ TEST(Program, ReadsOptionsAndRefusesOthers) {
 }
 
 }  // namespace
-}  // namespace evodevo::tools
+}  // namespace evodevo::tools::EVODEVO_FILE

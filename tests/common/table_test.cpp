@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace evodevo::tools {
+namespace evodevo::tools::EVODEVO_FILE {
 namespace {
 
 TEST(Table, IsCsvWithAHeader) {
@@ -31,4 +31,4 @@ TEST(Table, SaysWhereItCannotBeWritten) {
 }
 
 }  // namespace
-}  // namespace evodevo::tools
+}  // namespace evodevo::tools::EVODEVO_FILE

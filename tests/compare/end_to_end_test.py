@@ -23,13 +23,29 @@ PLAIN, DEVELOPING = small_experiment(), small_experiment(development=True)
 
 
 class Comparison(unittest.TestCase):
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = pathlib.Path(scratch.name)
+    @classmethod
+    def setUpClass(cls):
+        """Makes a comparison, of which tests get a copy (finished())."""
+        scratch = cls.enterClassContext(tempfile.TemporaryDirectory())
+        cls.made = cls()
+        cls.made.at(pathlib.Path(scratch))
+        done = cls.made.compare()
+        cls.made.assertEqual(done.returncode, 0, done.stderr)
+
+    def at(self, folder):
+        """Lets commands compare the experiments in a folder."""
+        self.folder = folder
         self.plain, self.developing = self.folder / "plain.toml", self.folder / "developing.toml"
         self.plain.write_text(PLAIN)
         self.developing.write_text(DEVELOPING)
+
+    def finished(self, out="out"):
+        shutil.copytree(self.made.folder / "out", self.folder / out)
+
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.at(pathlib.Path(scratch.name))
 
     def command(self, *more, out="out"):
         return [*COMPARE, self.plain, self.developing, "--seeds", "2", "--out", self.folder / out, *more]
@@ -63,7 +79,7 @@ class Comparison(unittest.TestCase):
         self.assertLess(cost[names[1]], cost[names[2]])
 
     def test_what_is_there_is_not_made_again(self):
-        self.assertEqual(self.compare().returncode, 0)
+        self.finished()
         files = list((self.folder / "out").rglob("run.sqlite"))
         self.assertEqual(len(files), 4)
         before = {file: file.stat().st_mtime_ns for file in files}
@@ -73,7 +89,7 @@ class Comparison(unittest.TestCase):
 
     def test_rows_are_enough_to_go_on(self):
         self.assertEqual(self.compare("--seeds", "3", out="straight").returncode, 0)
-        self.assertEqual(self.compare().returncode, 0)
+        self.finished()
         shutil.rmtree(self.folder / "out" / "runs")
         kept = {file: file.read_bytes() for file in (self.folder / "out" / "rows").rglob("seed-*.json")}
         self.assertEqual(len(kept), 4)
@@ -86,7 +102,7 @@ class Comparison(unittest.TestCase):
         self.assertEqual({file: file.read_bytes() for file in kept}, kept)
 
     def test_a_damaged_row_is_named(self):
-        self.assertEqual(self.compare().returncode, 0)
+        self.finished()
         file = self.folder / "out" / "rows" / "plain" / "seed-2.json"
         whole = file.read_text()
         for damaged in (whole[:-37], "[]", whole.replace('"wall_time"', '"time"')):
@@ -108,7 +124,7 @@ class Comparison(unittest.TestCase):
         self.assertRegex(done.stdout, r"\| `developing`, beside `plain` \| . of 3 and . of 3 \|")
 
     def test_killed_runs_go_on(self):
-        self.assertEqual(self.compare(out="straight").returncode, 0)
+        self.finished(out="straight")
         for seed, lines in ((1, 1), (2, 3)):
             folder = self.folder / "out" / "runs" / "plain" / f"seed-{seed}"
             command = [PROGRAM, "run", self.plain, "--out", folder, "--seed", str(seed)]
@@ -125,7 +141,7 @@ class Comparison(unittest.TestCase):
         self.assertEqual(self.results(), self.results("straight"))
 
     def test_runs_killed_before_they_were_verified_are_verified(self):
-        self.assertEqual(self.compare().returncode, 0)
+        self.finished()
         file = self.folder / "out/runs/plain/seed-2/run.sqlite"
         with contextlib.closing(sqlite3.connect(file)) as run, run:
             run.execute("DELETE FROM verifications")
@@ -148,7 +164,7 @@ class Comparison(unittest.TestCase):
         self.assertIn("not verified", again.stdout)
 
     def test_a_stopped_comparison_goes_on(self):
-        self.assertEqual(self.compare(out="straight").returncode, 0)
+        self.finished(out="straight")
         for number in (signal.SIGINT, signal.SIGTERM):
             with subprocess.Popen(self.command(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as stopped:
                 stopped.stdout.readline()
@@ -161,7 +177,7 @@ class Comparison(unittest.TestCase):
         self.assertEqual(self.results(), self.results("straight"))
 
     def test_equal_cost(self):
-        self.assertEqual(self.compare(out="all").returncode, 0)
+        self.finished("all")
         header, *rows = self.results("all")
         column = header.index("spring_evaluations")
         budget = min(int(row[column]) for row in rows if row[2] == "10")
@@ -223,7 +239,7 @@ class Comparison(unittest.TestCase):
         self.assertIn("| `developing` |", (out / "report.md").read_text())
 
     def test_runs_of_another_build_are_named(self):
-        self.assertEqual(self.compare().returncode, 0)
+        self.finished()
         with contextlib.closing(sqlite3.connect(self.folder / "out/runs/plain/seed-2/run.sqlite")) as run, run:
             run.execute("UPDATE operators SET hash = 'another' WHERE kind = 'fitness'")
         # a run that another build of the program began and this one resumed
@@ -239,7 +255,7 @@ class Comparison(unittest.TestCase):
         self.assertRegex(done.stdout, r"- evodevo:\n  - 0.1.0 \([0-9a-f]{16}\): 2 of `plain`, 2 of `developing`\n")
 
     def test_runs_of_something_else_are_refused(self):
-        self.assertEqual(self.compare().returncode, 0)
+        self.finished()
         refused = self.compare("--set", "experiment.population=4")
         self.assertEqual(refused.returncode, 2)
         self.assertRegex(refused.stderr, "plain: its runs were made from another plain.toml or with another --set")
@@ -264,7 +280,7 @@ class Comparison(unittest.TestCase):
         self.assertTrue(run.exists())
 
     def test_files_that_cannot_be_read_are_named(self):
-        self.assertEqual(self.compare().returncode, 0)
+        self.finished()
         made_from = self.folder / "out" / "rows" / "plain" / "made-from.json"
         database = self.folder / "out" / "runs" / "plain" / "seed-1" / "run.sqlite"
         (self.folder / "out" / "rows" / "plain" / "seed-1.json").unlink()

@@ -15,7 +15,7 @@
 #include "support/process.hpp"
 #include "support/scratch.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 namespace fs = std::filesystem;
@@ -554,4 +554,4 @@ TEST_F(Command, OperatorsDescribeThemselves) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

@@ -1,4 +1,4 @@
-// Every experiment of the project runs, and the robots of the quickstart walk.
+// Every experiment of the project runs. ReadmeRun tests what the robots of the quickstart learn.
 #include "support/experiments.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include "support/process.hpp"
 #include "support/scratch.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 namespace fs = std::filesystem;
@@ -217,28 +217,5 @@ TEST(Experiments, WalkersThatCreepSettleTenSeconds) {
   EXPECT_FALSE(swimmer.scene.floor || swimmer.scene.damping);
 }
 
-TEST(Experiments, QuickstartLearnsToWalkAndDoesNotFall) {
-  const testing::Scratch scratch;
-  const std::string folder = (scratch / "run").string();
-  const testing::Finished finished =
-      testing::run({EVODEVO_PROGRAM, "run", experiment_file("quickstart.toml"), "--out", folder, "--device", "cpu"});
-  ASSERT_EQ(finished.exit_code, 0) << finished.output;
-  const Archive archive = Archive::read(folder);
-  const std::vector<Summary> generations = archive.generations();
-  EXPECT_GT(generations.back().best.value(), 1.5 * generations.front().best.value());
-
-  // at its end, the run verifies the matured body of its champion
-  const Individual champion = archive.individual(archive.best(1).at(0)).value();
-  const Verification verification = archive.verification(champion.id).value();
-  const auto value = [&](const std::string& name) {
-    for (const Trial& trial : verification.trials)
-      if (trial.name == name) return trial.value.value();
-    throw std::out_of_range(name);
-  };
-  EXPECT_EQ(value("again"), champion.result.objectives.front()) << "the same bits when lived again";
-  EXPECT_LT(value("no-muscles"), 0.2 * champion.result.objectives.front());
-  EXPECT_EQ(marks(verification, true), std::vector<std::string>{}) << "neither passive nor an artefact";
-}
-
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

@@ -9,7 +9,7 @@
 #include "support/messages.hpp"
 #include "support/process.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 namespace fs = std::filesystem;
@@ -96,4 +96,4 @@ TEST_F(IslandCommands, CheckShowsWhoSendsToWhom) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

@@ -15,7 +15,7 @@
 #include "support/process.hpp"
 #include "support/scratch.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 namespace fs = std::filesystem;
@@ -316,4 +316,4 @@ TEST_F(Plugins, AnOperatorOfAnUnusableLibraryIsMissedWithTheReason) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

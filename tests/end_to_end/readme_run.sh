@@ -41,7 +41,19 @@ echo "$output" | tail -n 8
 grep -q '^quickstart on cpu\|^quickstart on cuda' <<<"$output" || { echo "it does not say which device it uses"; exit 1; }
 [ -e runs/quickstart-1/run.sqlite ] || { echo "it left no run behind"; exit 1; }
 
+# robots learn to walk, and the run verifies its champion at its end
+python3 - <<'END'
+import sqlite3
+run = sqlite3.connect("runs/quickstart-1/run.sqlite")
+best = [row[0] for row in run.execute("SELECT best FROM generations ORDER BY generation")]
+assert best[-1] > 1.5 * best[0], f"from {best[0]} to {best[-1]}"
+trials = dict(run.execute("SELECT trial, value FROM verifications"))
+assert trials["again"] == best[-1], f"the champion is not the same to the bit when it lives again: {trials}"
+assert trials["no-muscles"] < 0.2 * best[-1], f"the champion needs no muscles: {trials}"
+END
+
 # from now on, nothing needs to be built
 started=$(date +%s%N)
-tools/evodevo show runs/quickstart-1 >/dev/null
+shown=$(tools/evodevo show runs/quickstart-1)
+grep -q ', verified$' <<<"$shown" || { echo "the champion falls, or exploits an error: $shown"; exit 1; }
 echo "a later call took $((($(date +%s%N) - started) / 1000000)) ms"

@@ -27,7 +27,11 @@ fi
 # before the second build, replaces the loop of the template with that of the README
 change='sed -i -e "/^    for (.*springs_/{r $scratch/loop" -e "d}" growth.cpp'
 commands=${commands/$'\n'cmake --build build$'\n'/$'\n'"$change"$'\n'cmake --build build$'\n'}
-grep -qF 'sed -i' <<<"$commands" || { echo "README.md does not build the operator again"; exit 1; }
+# 40 evaluations are enough to see that the run uses the operator
+fewer="sed -i 's/^evaluations = .*/evaluations = 40/; s/^population = .*/population = 20/' walk.toml"
+commands=${commands/$'\n'evodevo run walk.toml$'\n'/$'\n'"$fewer"$'\n'evodevo run walk.toml$'\n'}
+grep -qF 'evaluations = 40' <<<"$commands" || { echo "README.md does not run walk.toml: $commands"; exit 1; }
+grep -qF 'sed -i -e' <<<"$commands" || { echo "README.md does not build the operator again"; exit 1; }
 cd "$scratch"
 set -x
 eval "$commands"

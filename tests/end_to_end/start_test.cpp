@@ -12,7 +12,7 @@
 #include "support/runs.hpp"
 #include "support/scratch.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 using testing::Finished;
@@ -159,4 +159,4 @@ TEST_F(Start, WhatCannotBeBornAgainIsRefusedBeforeAnythingIsWritten) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

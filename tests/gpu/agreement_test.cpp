@@ -7,7 +7,7 @@
 #include "core/skip_shift.hpp"
 #include "gpu.hpp"
 
-namespace evodevo::testing_gpu {
+namespace evodevo::testing_gpu::EVODEVO_FILE {
 namespace {
 
 /// Returns the tolerance of positions after 0.1 s, m; about ten times the deviations observed on an H200. Near 1 m, the
@@ -44,7 +44,7 @@ std::vector<Case> cases() {
        {Gravity{9.81, 12}, Floor{.roughness = 0.05, .restitution = 0.3}, Friction{0.4, 0.8}, Damping{}, Drag{0.5}}}};
 }
 
-class AgreementOfPlaces : public testing::TestWithParam<std::tuple<Case, Way>> {};
+class AgreementOfPlaces : public ::testing::TestWithParam<std::tuple<Case, Way>> {};
 
 TEST_P(AgreementOfPlaces, After200Steps) {
   EVODEVO_NEEDS_GPU();
@@ -63,12 +63,12 @@ TEST_P(AgreementOfPlaces, After200Steps) {
   EXPECT_LT(off, bound(way, scene.scene));
 }
 
-INSTANTIATE_TEST_SUITE_P(Gpu, AgreementOfPlaces, testing::Combine(testing::ValuesIn(cases()), all_ways()),
+INSTANTIATE_TEST_SUITE_P(Gpu, AgreementOfPlaces, ::testing::Combine(::testing::ValuesIn(cases()), all_ways()),
                          [](const auto& test) {
                            return std::string(std::get<Case>(test.param).name) + "_" + name(std::get<Way>(test.param));
                          });
 
-class AgreementOfRecords : public testing::TestWithParam<Way> {};
+class AgreementOfRecords : public ::testing::TestWithParam<Way> {};
 
 TEST_P(AgreementOfRecords, StressAndWorkOf150Steps) {
   EVODEVO_NEEDS_GPU();
@@ -131,7 +131,7 @@ TEST(AgreementOfTallies, InFloat64) {
 
 /// Methods that are stable for larger steps than explicit methods. They are compared in float64, since in float32
 /// contact soon makes the two motions differ.
-class AgreementOfLargeSteps : public testing::TestWithParam<Method> {};
+class AgreementOfLargeSteps : public ::testing::TestWithParam<Method> {};
 
 TEST_P(AgreementOfLargeSteps, After100Steps) {
   EVODEVO_NEEDS_GPU();
@@ -152,11 +152,11 @@ TEST_P(AgreementOfLargeSteps, After100Steps) {
   EXPECT_LT(off, 1e-6);
 }
 
-INSTANTIATE_TEST_SUITE_P(Gpu, AgreementOfLargeSteps, testing::Values(Method::implicit, Method::xpbd),
+INSTANTIATE_TEST_SUITE_P(Gpu, AgreementOfLargeSteps, ::testing::Values(Method::implicit, Method::xpbd),
                          [](const auto& test) { return std::string(evodevo::name(test.param)); });
 
 /// A thrown mass, whose positions must equal the closed-form solution of each method's steps.
-class FreeFall : public testing::TestWithParam<Way> {};
+class FreeFall : public ::testing::TestWithParam<Way> {};
 
 TEST_P(FreeFall, IsThatOfTheMethod) {
   EVODEVO_NEEDS_GPU();
@@ -180,4 +180,4 @@ TEST_P(FreeFall, IsThatOfTheMethod) {
 INSTANTIATE_TEST_SUITE_P(Gpu, FreeFall, all_ways(), [](const auto& test) { return name(test.param); });
 
 }  // namespace
-}  // namespace evodevo::testing_gpu
+}  // namespace evodevo::testing_gpu::EVODEVO_FILE

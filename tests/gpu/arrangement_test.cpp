@@ -11,7 +11,7 @@
 #include "cuda/layout/arrangement/partition.hpp"
 #include "cuda/layout/arrangement/row_order.hpp"
 
-namespace evodevo::cuda {
+namespace evodevo::cuda::EVODEVO_FILE {
 namespace {
 
 using testing_gpu::random_body;
@@ -231,4 +231,4 @@ TEST(RowOrder, ColoursWhatCanBeColoured) {
 }
 
 }  // namespace
-}  // namespace evodevo::cuda
+}  // namespace evodevo::cuda::EVODEVO_FILE

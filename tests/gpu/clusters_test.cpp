@@ -2,7 +2,7 @@
 // many bodies share the device.
 #include "gpu.hpp"
 
-namespace evodevo::testing_gpu {
+namespace evodevo::testing_gpu::EVODEVO_FILE {
 namespace {
 
 const Recording order_free{.stress = true, .work = false, .peak_force = true, .muscle_work = false, .tension = true};
@@ -29,7 +29,7 @@ void expect_same_bits(const Scene& scene, const Stepping& stepping, const Body& 
   }
 }
 
-class Clusters : public testing::TestWithParam<Way> {};
+class Clusters : public ::testing::TestWithParam<Way> {};
 
 TEST_P(Clusters, AnyNumberOfBlocksGivesTheSameBits) {
   EVODEVO_NEEDS_GPU();
@@ -107,4 +107,4 @@ TEST(Clusters, SamplesAndEnergiesDoNotDependOnTheNumberOfBlocks) {
 }
 
 }  // namespace
-}  // namespace evodevo::testing_gpu
+}  // namespace evodevo::testing_gpu::EVODEVO_FILE

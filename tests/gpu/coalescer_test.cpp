@@ -10,11 +10,11 @@
 
 #include "cuda/runtime/portion.hpp"
 
-namespace evodevo::cuda {
+namespace evodevo::cuda::EVODEVO_FILE {
 namespace {
 
-/// A key that tells when it has been looked up. The coalescer then holds its lock, until the caller waits or is the next
-/// to begin.
+/// A key that tells when it has been looked up. The coalescer then holds its lock, until the caller waits or is the
+/// next to begin.
 struct Key {
   int number = 0;
   std::atomic<bool>* looked_up = nullptr;
@@ -129,4 +129,4 @@ TEST(Kind, HasBodiesOfSimilarNumbersOfSteps) {
 }
 
 }  // namespace
-}  // namespace evodevo::cuda
+}  // namespace evodevo::cuda::EVODEVO_FILE

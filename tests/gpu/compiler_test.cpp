@@ -15,13 +15,13 @@
 #include "paper/sources.hpp"
 #include "paper/stress_methods.hpp"
 
-namespace evodevo::cuda {
+namespace evodevo::cuda::EVODEVO_FILE {
 namespace {
 
 namespace fs = std::filesystem;
 
 /// Uses a separate cache for the test.
-class Compiler : public testing::Test {
+class Compiler : public ::testing::Test {
  protected:
   Compiler() : cache_(fs::temp_directory_path() / ("evodevo-cache-" + std::to_string(::getpid()))) {
     ::setenv("XDG_CACHE_HOME", cache_.c_str(), 1);
@@ -171,4 +171,4 @@ TEST_F(Compiler, NamesAnArchitectureThatIsTooOld) {
 }
 
 }  // namespace
-}  // namespace evodevo::cuda
+}  // namespace evodevo::cuda::EVODEVO_FILE

@@ -6,7 +6,7 @@
 #include "analysis/ground.hpp"
 #include "gpu.hpp"
 
-namespace evodevo::testing_gpu {
+namespace evodevo::testing_gpu::EVODEVO_FILE {
 namespace {
 
 constexpr Recording all_records{.stress = true, .work = true, .peak_force = true, .muscle_work = true, .tension = true};
@@ -30,7 +30,7 @@ Body varied_body(std::uint32_t masses, std::uint32_t neighbours) {
   return body;
 }
 
-class ComputedMaterials : public testing::TestWithParam<Way> {
+class ComputedMaterials : public ::testing::TestWithParam<Way> {
  protected:
   /// Simulates a body for 0.055 s on both devices, and compares positions and all recorded quantities.
   static void compare(const Body& body, const Scene& scene) {
@@ -103,7 +103,7 @@ INSTANTIATE_TEST_SUITE_P(Gpu, ComputedMaterials, all_ways(), [](const auto& test
 
 /// Springs between masses that never move: at any time since birth, their forces must be those of the materials in
 /// their codes.
-class ComputedForces : public testing::TestWithParam<double> {};
+class ComputedForces : public ::testing::TestWithParam<double> {};
 
 TEST_P(ComputedForces, AreThoseOfTheCodes) {
   EVODEVO_NEEDS_GPU();
@@ -138,9 +138,9 @@ TEST_P(ComputedForces, AreThoseOfTheCodes) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Gpu, ComputedForces, testing::Values(0.0, 0.25, 12.3456, 5e4), [](const auto& test) {
+INSTANTIATE_TEST_SUITE_P(Gpu, ComputedForces, ::testing::Values(0.0, 0.25, 12.3456, 5e4), [](const auto& test) {
   return "From" + std::to_string(static_cast<int>(test.param * 100)) + "Hundredths";
 });
 
 }  // namespace
-}  // namespace evodevo::testing_gpu
+}  // namespace evodevo::testing_gpu::EVODEVO_FILE

@@ -5,7 +5,7 @@
 #include "gpu.hpp"
 #include "support/told.hpp"
 
-namespace evodevo::testing_gpu {
+namespace evodevo::testing_gpu::EVODEVO_FILE {
 namespace {
 
 using testing::Told;
@@ -63,4 +63,4 @@ TEST_P(ContactRecord, AgreesWithTheCpuOnRigidGround) {
 INSTANTIATE_TEST_SUITE_P(Gpu, ContactRecord, all_ways(), [](const auto& test) { return name(test.param); });
 
 }  // namespace
-}  // namespace evodevo::testing_gpu
+}  // namespace evodevo::testing_gpu::EVODEVO_FILE

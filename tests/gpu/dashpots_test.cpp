@@ -4,12 +4,12 @@
 #include "physics/pieces.hpp"
 #include "physics/samples.hpp"
 
-namespace evodevo::testing_gpu {
+namespace evodevo::testing_gpu::EVODEVO_FILE {
 namespace {
 
 using test::with_dashpots;
 
-class GpuDashpots : public testing::TestWithParam<Way> {
+class GpuDashpots : public ::testing::TestWithParam<Way> {
  protected:
   static Method method() { return std::get<Method>(GetParam()); }
   static bool single() { return std::get<Precision>(GetParam()) == Precision::float32; }
@@ -107,4 +107,4 @@ TEST_P(GpuDashpots, BesideComputedMaterials) {
 }
 
 }  // namespace
-}  // namespace evodevo::testing_gpu
+}  // namespace evodevo::testing_gpu::EVODEVO_FILE

@@ -4,10 +4,10 @@
 #include "physics/scenes.hpp"
 #include "threads/parallel.hpp"
 
-namespace evodevo::testing_gpu {
+namespace evodevo::testing_gpu::EVODEVO_FILE {
 namespace {
 
-class Determinism : public testing::TestWithParam<Way> {};
+class Determinism : public ::testing::TestWithParam<Way> {};
 
 void expect_same_bits(const Robot& a, const Robot& b) {
   EXPECT_EQ(a.answer.status, b.answer.status);
@@ -177,4 +177,4 @@ TEST_P(Determinism, HoldsForTasksInTheirOwnScenes) {
 INSTANTIATE_TEST_SUITE_P(Gpu, Determinism, all_ways(), [](const auto& test) { return name(test.param); });
 
 }  // namespace
-}  // namespace evodevo::testing_gpu
+}  // namespace evodevo::testing_gpu::EVODEVO_FILE

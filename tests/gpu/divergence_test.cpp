@@ -8,10 +8,10 @@
 #include "analysis/stability.hpp"
 #include "gpu.hpp"
 
-namespace evodevo::testing_gpu {
+namespace evodevo::testing_gpu::EVODEVO_FILE {
 namespace {
 
-class Divergence : public testing::TestWithParam<Way> {};
+class Divergence : public ::testing::TestWithParam<Way> {};
 
 /// A body that is too stiff for a step of 0.5 ms, and diverges.
 Body unstable_body() { return random_body(100, 15, 1, {{2e7, 0, 0, 0}}); }
@@ -49,7 +49,7 @@ TEST_P(Divergence, EndsWhenTheCpuSaysSo) {
   EXPECT_EQ(gpu.answer.ended_at, cpu.answer.ended_at);
 }
 
-class NotFinite : public testing::TestWithParam<Way> {};
+class NotFinite : public ::testing::TestWithParam<Way> {};
 
 TEST_P(NotFinite, IsDivergence) {
   EVODEVO_NEEDS_GPU();
@@ -61,7 +61,7 @@ TEST_P(NotFinite, IsDivergence) {
   simulate(*make_cuda_simulator(scene, stepping(GetParam())), {&run}, 300);
   EXPECT_EQ(run.answer.status, Status::diverged);
   EXPECT_EQ(run.answer.ended_at, 0.05);
-  EXPECT_THAT(run.answer.reason, testing::HasSubstr("non-finite"));
+  EXPECT_THAT(run.answer.reason, ::testing::HasSubstr("non-finite"));
 }
 
 TEST_P(Divergence, ForceRange) {
@@ -74,7 +74,7 @@ TEST_P(Divergence, ForceRange) {
   run.dt = 1.05 * largest_dt(body, start.position, std::get<Method>(GetParam()));
   simulate(*make_cuda_simulator(Scene{}, stepping(GetParam())), {&run}, 300);
   EXPECT_EQ(run.answer.status, Status::diverged);
-  EXPECT_THAT(run.answer.reason, testing::HasSubstr("force range"));
+  EXPECT_THAT(run.answer.reason, ::testing::HasSubstr("force range"));
 }
 
 TEST_P(Divergence, NotUnderAWeightThatSpringsCannotBear) {
@@ -95,4 +95,4 @@ INSTANTIATE_TEST_SUITE_P(Gpu, Divergence, explicit_ways(), [](const auto& test) 
 INSTANTIATE_TEST_SUITE_P(Gpu, NotFinite, all_ways(), [](const auto& test) { return name(test.param); });
 
 }  // namespace
-}  // namespace evodevo::testing_gpu
+}  // namespace evodevo::testing_gpu::EVODEVO_FILE

@@ -9,12 +9,12 @@
 #include "cuda/runtime/device.hpp"
 #include "cuda/runtime/error.hpp"
 
-namespace evodevo::cuda {
+namespace evodevo::cuda::EVODEVO_FILE {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::StartsWith;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 std::string message(cudaError_t result) {
   try {
@@ -92,16 +92,16 @@ TEST(EqualDevices, AreThoseOfTheFirstTypeUnlessNumbersAreGiven) {
 }
 
 TEST(EqualDevices, ThatAreMissingOrDifferAreRefused) {
-  EXPECT_THAT(chosen({"H200"}, {1}), testing::AllOf(HasSubstr("no GPU 1"), HasSubstr("sees 1")));
-  EXPECT_THAT(chosen({"H200", "A100"}, {0, 1}), testing::AllOf(HasSubstr("GPU 0 (H200"), HasSubstr("GPU 1 (A100")));
+  EXPECT_THAT(chosen({"H200"}, {1}), ::testing::AllOf(HasSubstr("no GPU 1"), HasSubstr("sees 1")));
+  EXPECT_THAT(chosen({"H200", "A100"}, {0, 1}), ::testing::AllOf(HasSubstr("GPU 0 (H200"), HasSubstr("GPU 1 (A100")));
 }
 
 /// Under CTest, this test runs in a separate process: CUDA reads the visible devices only at its first call.
 TEST(Device, ThatIsHiddenIsMissed) {
   ::setenv("CUDA_VISIBLE_DEVICES", "-1", 1);
-  EXPECT_THAT(why_cuda_is_unusable(), testing::AnyOf(HasSubstr("CUDA_VISIBLE_DEVICES"), HasSubstr("NVIDIA driver")));
+  EXPECT_THAT(why_cuda_is_unusable(), ::testing::AnyOf(HasSubstr("CUDA_VISIBLE_DEVICES"), HasSubstr("NVIDIA driver")));
   EXPECT_TRUE(sees_no_gpu());
 }
 
 }  // namespace
-}  // namespace evodevo::cuda
+}  // namespace evodevo::cuda::EVODEVO_FILE

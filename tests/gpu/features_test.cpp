@@ -13,7 +13,7 @@
 
 #include "cuda/runtime/compiler.hpp"
 
-namespace evodevo::cuda {
+namespace evodevo::cuda::EVODEVO_FILE {
 namespace {
 
 /// A feature, and the code that exists only for it.
@@ -264,7 +264,7 @@ const std::vector<Form> forms{
      Materials::computed},
 };
 
-class FeatureCode : public testing::TestWithParam<Form> {
+class FeatureCode : public ::testing::TestWithParam<Form> {
  protected:
   Operations code(const Sources& sources, const Features& features) const {
     return operations(compile(sources.all(), GetParam().source, GetParam().definitions(features), "sm_90"));
@@ -299,9 +299,9 @@ TEST_P(FeatureCode, IsNotThereWhereAllAreOff) {
   EXPECT_TRUE(bare == code(sources, every_feature()));
 }
 
-INSTANTIATE_TEST_SUITE_P(Cuda, FeatureCode, testing::ValuesIn(forms), [](const auto& test) {
+INSTANTIATE_TEST_SUITE_P(Cuda, FeatureCode, ::testing::ValuesIn(forms), [](const auto& test) {
   return std::regex_replace(std::string(test.param.name), std::regex("\\W+"), "_");
 });
 
 }  // namespace
-}  // namespace evodevo::cuda
+}  // namespace evodevo::cuda::EVODEVO_FILE

@@ -7,7 +7,7 @@
 #include "gpu.hpp"
 #include "life/evaluation.hpp"
 
-namespace evodevo::testing_gpu {
+namespace evodevo::testing_gpu::EVODEVO_FILE {
 namespace {
 
 /// Small robots without development, scored by their distance in 5 s after 3 s of settling. Each takes
@@ -93,4 +93,4 @@ TEST(Fitness, Of500RandomRobotsRanksAlike) {
 }
 
 }  // namespace
-}  // namespace evodevo::testing_gpu
+}  // namespace evodevo::testing_gpu::EVODEVO_FILE

@@ -2,10 +2,10 @@
 #include "analysis/ground.hpp"
 #include "gpu.hpp"
 
-namespace evodevo::testing_gpu {
+namespace evodevo::testing_gpu::EVODEVO_FILE {
 namespace {
 
-class Forms : public testing::TestWithParam<Way> {
+class Forms : public ::testing::TestWithParam<Way> {
  protected:
   /// Simulates a body for 0.05 s on both devices, and compares positions and all recorded quantities.
   void compare(const Body& body, const State& start, unsigned largest_cluster = default_cluster) {
@@ -180,10 +180,10 @@ TEST_P(Sizes, PartsWithoutCutSprings) {
 
 // one method for each kind of kernel
 INSTANTIATE_TEST_SUITE_P(Gpu, Forms,
-                         testing::Combine(testing::Values(Method::paper_euler, Method::implicit, Method::xpbd),
-                                          testing::Values(Precision::float32, Precision::float64)),
+                         ::testing::Combine(::testing::Values(Method::paper_euler, Method::implicit, Method::xpbd),
+                                            ::testing::Values(Precision::float32, Precision::float64)),
                          [](const auto& test) { return name(test.param); });
 INSTANTIATE_TEST_SUITE_P(Gpu, Sizes, all_ways(), [](const auto& test) { return name(test.param); });
 
 }  // namespace
-}  // namespace evodevo::testing_gpu
+}  // namespace evodevo::testing_gpu::EVODEVO_FILE

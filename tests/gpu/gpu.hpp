@@ -45,12 +45,13 @@ inline constexpr std::array all_methods = {Method::paper_euler, Method::symplect
                                            Method::rk4,         Method::implicit,         Method::xpbd};
 
 inline auto explicit_ways() {
-  return testing::Combine(testing::ValuesIn(all_methods.begin(), all_methods.begin() + 4),
-                          testing::Values(Precision::float32, Precision::float64));
+  return ::testing::Combine(::testing::ValuesIn(all_methods.begin(), all_methods.begin() + 4),
+                            ::testing::Values(Precision::float32, Precision::float64));
 }
 
 inline auto all_ways() {
-  return testing::Combine(testing::ValuesIn(all_methods), testing::Values(Precision::float32, Precision::float64));
+  return ::testing::Combine(::testing::ValuesIn(all_methods),
+                            ::testing::Values(Precision::float32, Precision::float64));
 }
 
 }  // namespace evodevo::testing_gpu

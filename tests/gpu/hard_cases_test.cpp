@@ -4,10 +4,10 @@
 
 #include "gpu.hpp"
 
-namespace evodevo::testing_gpu {
+namespace evodevo::testing_gpu::EVODEVO_FILE {
 namespace {
 
-class HardCases : public testing::TestWithParam<test::Arithmetic> {};
+class HardCases : public ::testing::TestWithParam<test::Arithmetic> {};
 
 INSTANTIATE_TEST_SUITE_P(Gpu, HardCases, all_ways(),
                          [](const auto& instance) { return test::name_of(instance.param); });
@@ -26,4 +26,4 @@ TEST_P(HardCases, AreRightOrFlagged) {
 }
 
 }  // namespace
-}  // namespace evodevo::testing_gpu
+}  // namespace evodevo::testing_gpu::EVODEVO_FILE

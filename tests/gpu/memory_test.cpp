@@ -13,7 +13,7 @@
 #include "physics/support.hpp"
 #include "threads/parallel.hpp"
 
-namespace evodevo::testing_gpu {
+namespace evodevo::testing_gpu::EVODEVO_FILE {
 namespace {
 
 constexpr std::size_t mebibyte = std::size_t{1} << 20;
@@ -42,7 +42,7 @@ class Ballast {
 };
 
 /// Provides several bodies, each with its result when memory is plentiful.
-class ScarceMemory : public testing::Test {
+class ScarceMemory : public ::testing::Test {
  protected:
   void SetUp() override {
     EVODEVO_NEEDS_GPU();
@@ -117,10 +117,10 @@ TEST_F(ScarceMemory, ThatIsTooLittleForOneBodyIsNamed) {
       run();
       ADD_FAILURE() << "it had memory";
     } catch (const std::runtime_error& error) {
-      EXPECT_THAT(error.what(), testing::StartsWith("CUDA: a body of 68921 masses and "));
-      EXPECT_THAT(error.what(), testing::HasSubstr(" MiB of the GPU's memory"));
-      EXPECT_THAT(error.what(), testing::HasSubstr("nvidia-smi"));
-      EXPECT_THAT(error.what(), testing::Not(testing::HasSubstr("\n")));
+      EXPECT_THAT(error.what(), ::testing::StartsWith("CUDA: a body of 68921 masses and "));
+      EXPECT_THAT(error.what(), ::testing::HasSubstr(" MiB of the GPU's memory"));
+      EXPECT_THAT(error.what(), ::testing::HasSubstr("nvidia-smi"));
+      EXPECT_THAT(error.what(), ::testing::Not(::testing::HasSubstr("\n")));
     }
   }
   run();
@@ -158,4 +158,4 @@ TEST(StreamsAtRest, WaitsForStreamsWhateverIsThrown) {
 }
 
 }  // namespace
-}  // namespace evodevo::testing_gpu
+}  // namespace evodevo::testing_gpu::EVODEVO_FILE

@@ -10,7 +10,7 @@
 #include "evodevo/lattice.hpp"
 #include "gpu.hpp"
 
-namespace evodevo::testing_gpu {
+namespace evodevo::testing_gpu::EVODEVO_FILE {
 namespace {
 
 using Places = std::vector<Vec3>;
@@ -141,4 +141,4 @@ TEST(GpuNeighbours, PassesOnWhatTheCallerThrows) {
 }
 
 }  // namespace
-}  // namespace evodevo::testing_gpu
+}  // namespace evodevo::testing_gpu::EVODEVO_FILE

@@ -7,7 +7,7 @@
 #include "gpu.hpp"
 #include "paper/paper_simulator.hpp"
 
-namespace evodevo::testing_gpu {
+namespace evodevo::testing_gpu::EVODEVO_FILE {
 namespace {
 
 using tools::bench::MassMemory;
@@ -36,7 +36,7 @@ std::uint64_t sum(const std::vector<std::uint32_t>& counts) {
   return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
 }
 
-class PaperMotion : public testing::TestWithParam<std::tuple<MassMemory, SpringOrder>> {};
+class PaperMotion : public ::testing::TestWithParam<std::tuple<MassMemory, SpringOrder>> {};
 
 TEST_P(PaperMotion, IsOurs) {
   EVODEVO_NEEDS_GPU();
@@ -61,8 +61,8 @@ TEST_P(PaperMotion, IsOurs) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Gpu, PaperMotion,
-                         testing::Combine(testing::Values(MassMemory::global, MassMemory::shared),
-                                          testing::ValuesIn(tools::bench::spring_orders)));
+                         ::testing::Combine(::testing::Values(MassMemory::global, MassMemory::shared),
+                                            ::testing::ValuesIn(tools::bench::spring_orders)));
 
 TEST(PaperStress, AtomicSumsAreOurs) {
   EVODEVO_NEEDS_GPU();
@@ -108,4 +108,4 @@ TEST(PaperStress, SkipShiftFindsWhatIsStressed) {
 }
 
 }  // namespace
-}  // namespace evodevo::testing_gpu
+}  // namespace evodevo::testing_gpu::EVODEVO_FILE

@@ -10,7 +10,7 @@
 #include "bodies.hpp"
 #include "cuda/layout/arrangement/arranged_body.hpp"
 
-namespace evodevo::cuda {
+namespace evodevo::cuda::EVODEVO_FILE {
 namespace {
 
 using testing_gpu::random_body;
@@ -126,4 +126,4 @@ TEST(ArrangedBody, DependsOnTheBodyAloneIfAsked) {
 }
 
 }  // namespace
-}  // namespace evodevo::cuda
+}  // namespace evodevo::cuda::EVODEVO_FILE

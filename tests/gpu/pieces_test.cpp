@@ -5,10 +5,10 @@
 #include "gpu.hpp"
 #include "physics/guard_cases.hpp"
 
-namespace evodevo::testing_gpu {
+namespace evodevo::testing_gpu::EVODEVO_FILE {
 namespace {
 
-class GpuRuns : public testing::TestWithParam<Way> {
+class GpuRuns : public ::testing::TestWithParam<Way> {
  protected:
   static Method method() { return std::get<Method>(GetParam()); }
   static test::SimulatorFactory factory() {
@@ -68,4 +68,4 @@ TEST(GpuRunsOfComputedMaterials, InPiecesEndInTheBitsOfTheWhole) {
 }
 
 }  // namespace
-}  // namespace evodevo::testing_gpu
+}  // namespace evodevo::testing_gpu::EVODEVO_FILE

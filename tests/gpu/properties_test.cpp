@@ -5,14 +5,14 @@
 #include "gpu.hpp"
 #include "physics/random_lives.hpp"
 
-namespace evodevo::testing_gpu {
+namespace evodevo::testing_gpu::EVODEVO_FILE {
 namespace {
 
 using test::Answer;
 using test::Life;
 using test::mirrored;
 
-class Property : public testing::TestWithParam<test::Arithmetic> {
+class Property : public ::testing::TestWithParam<test::Arithmetic> {
  protected:
   static Stepping stepping() { return {std::get<Method>(GetParam()), std::get<Precision>(GetParam())}; }
   static std::unique_ptr<Simulator> simulator(const Scene& scene) { return make_cuda_simulator(scene, stepping()); }
@@ -76,4 +76,4 @@ TEST_P(Property, AMirroredBodyMovesAsTheMirrorImage) {
 }
 
 }  // namespace
-}  // namespace evodevo::testing_gpu
+}  // namespace evodevo::testing_gpu::EVODEVO_FILE

@@ -14,7 +14,7 @@
 #include "analysis/ground.hpp"
 #include "bodies.hpp"
 
-namespace evodevo::cuda {
+namespace evodevo::cuda::EVODEVO_FILE {
 namespace {
 
 constexpr std::size_t shared_bytes = 227 << 10;  // shared memory of a block on an H200
@@ -343,4 +343,4 @@ TEST(Resident, WhatIsRecordedDoesNotDecideWhereABodyLies) {
 }
 
 }  // namespace
-}  // namespace evodevo::cuda
+}  // namespace evodevo::cuda::EVODEVO_FILE

@@ -6,7 +6,7 @@
 #include "gpu.hpp"
 #include "physics/support.hpp"
 
-namespace evodevo::testing_gpu {
+namespace evodevo::testing_gpu::EVODEVO_FILE {
 namespace {
 
 constexpr std::uint64_t steps = 300;
@@ -71,7 +71,7 @@ End end_of(Simulator& simulator, const Body& body, const State& start) {
   return end;
 }
 
-class GpuRigidFloor : public testing::TestWithParam<Method> {
+class GpuRigidFloor : public ::testing::TestWithParam<Method> {
  protected:
   /// Compares the ends of a run in single precision.
   static void compare(const Body& body, const State& start, const Scene& scene) {
@@ -86,12 +86,12 @@ class GpuRigidFloor : public testing::TestWithParam<Method> {
     std::printf("           off by %.3g m\n", distance(cpu.state, gpu.state));
     EXPECT_GT(distance(gpu.state, start), 0.01);
     EXPECT_LT(distance(cpu.state, gpu.state), near);
-    EXPECT_THAT(gpu.contacts, testing::Pointwise(testing::DoubleNear(0.05 * steps), cpu.contacts));
+    EXPECT_THAT(gpu.contacts, ::testing::Pointwise(::testing::DoubleNear(0.05 * steps), cpu.contacts));
     EXPECT_GT(*std::max_element(gpu.contacts.begin(), gpu.contacts.end()), 0.5 * steps);
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Gpu, GpuRigidFloor, testing::ValuesIn(all_methods), [](const auto& test) {
+INSTANTIATE_TEST_SUITE_P(Gpu, GpuRigidFloor, ::testing::ValuesIn(all_methods), [](const auto& test) {
   return name(Way{test.param, Precision::float32});
 });
 
@@ -120,4 +120,4 @@ TEST_P(GpuRigidFloor, BeyondTheChip) {
 }
 
 }  // namespace
-}  // namespace evodevo::testing_gpu
+}  // namespace evodevo::testing_gpu::EVODEVO_FILE

@@ -3,10 +3,10 @@
 
 #include "gpu.hpp"
 
-namespace evodevo::testing_gpu {
+namespace evodevo::testing_gpu::EVODEVO_FILE {
 namespace {
 
-class GpuSamples : public testing::TestWithParam<Way> {
+class GpuSamples : public ::testing::TestWithParam<Way> {
  protected:
   static Method method() { return std::get<Method>(GetParam()); }
   static test::SimulatorFactory factory() {
@@ -185,7 +185,7 @@ TEST(GpuSamplesOfBatches, OfNothingAreEmpty) {
   EXPECT_EQ(tasks[1].samples[0].positions.size(), 30u);
 }
 
-class GpuRecords : public testing::TestWithParam<Way> {};
+class GpuRecords : public ::testing::TestWithParam<Way> {};
 
 INSTANTIATE_TEST_SUITE_P(Gpu, GpuRecords, all_ways(), [](const auto& test) { return name(test.param); });
 
@@ -207,4 +207,4 @@ TEST_P(GpuRecords, DoNotChangeEachOther) {
 }
 
 }  // namespace
-}  // namespace evodevo::testing_gpu
+}  // namespace evodevo::testing_gpu::EVODEVO_FILE

@@ -3,10 +3,10 @@
 #include "analysis/split_materials.hpp"
 #include "gpu.hpp"
 
-namespace evodevo::testing_gpu {
+namespace evodevo::testing_gpu::EVODEVO_FILE {
 namespace {
 
-class StiffnessFactors : public testing::TestWithParam<Way> {
+class StiffnessFactors : public ::testing::TestWithParam<Way> {
  protected:
   static void compare(std::uint32_t masses, Materials materials) {
     Body body = random_body(masses, 12, 4);
@@ -48,4 +48,4 @@ TEST_P(StiffnessFactors, BeyondTheChip) {
 INSTANTIATE_TEST_SUITE_P(Gpu, StiffnessFactors, all_ways(), [](const auto& test) { return name(test.param); });
 
 }  // namespace
-}  // namespace evodevo::testing_gpu
+}  // namespace evodevo::testing_gpu::EVODEVO_FILE

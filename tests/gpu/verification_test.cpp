@@ -7,7 +7,7 @@
 #include "life/evaluation.hpp"
 #include "support/pairs.hpp"
 
-namespace evodevo::testing_gpu {
+namespace evodevo::testing_gpu::EVODEVO_FILE {
 namespace {
 
 using evodevo::testing::exaggerated, evodevo::testing::measured_step;
@@ -38,4 +38,4 @@ TEST(Verification, FindsTheSameOnBothDevices) {
 }
 
 }  // namespace
-}  // namespace evodevo::testing_gpu
+}  // namespace evodevo::testing_gpu::EVODEVO_FILE

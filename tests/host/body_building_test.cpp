@@ -12,7 +12,7 @@
 #include "analysis/neighbours.hpp"
 #include "support/messages.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 /// A blueprint of masses at the given positions along x, with material 0 (bone) or 1 (air).
@@ -293,4 +293,4 @@ TEST(BodyBuilding, APopulationIsBuiltAsEachBodyAlone) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

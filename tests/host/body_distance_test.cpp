@@ -12,7 +12,7 @@
 #include "life/birth.hpp"
 #include "support/experiments.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 /// A chain of masses of 1 kg at rest positions. Masses with numbers from `born` on were added after birth.
@@ -213,4 +213,4 @@ TEST(BodyDistance, OfBodiesThatDidNotDevelopIsZeroWhateverTheScene) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

@@ -12,7 +12,7 @@
 #include "support/messages.hpp"
 #include "support/scratch.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 /// Random numbers of all magnitudes, with all their digits.
@@ -127,4 +127,4 @@ TEST(BodyJson, AMessageQuotesUpTo60Bytes) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

@@ -12,7 +12,7 @@
 #include "support/messages.hpp"
 #include "threads/parallel.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 TEST(Breeding, TheFirstGenerationIsRandom) {
@@ -140,4 +140,4 @@ TEST(Breeding, AnOperatorThatLeavesTheLayoutIsNamed) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

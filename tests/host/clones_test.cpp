@@ -11,7 +11,7 @@
 #include "support/experiments.hpp"
 #include "support/scratch.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 using ::testing::ElementsAre;
@@ -194,4 +194,4 @@ INSTANTIATE_TEST_SUITE_P(Clones, Run, ::testing::Values("elitist", "age-fitness-
                          });
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

@@ -7,7 +7,7 @@
 #include "life/evaluation.hpp"
 #include "support/experiments.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 /// A simulator that should be called by several threads at the same time, like that of a GPU.
@@ -91,4 +91,4 @@ TEST(Cohorts, PassOnAFailure) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

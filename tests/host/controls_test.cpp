@@ -13,7 +13,7 @@
 #include "life/evaluation.hpp"
 #include "support/experiments.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 const Material bone{10000, 0, 0, 0};
@@ -543,4 +543,4 @@ TEST(Development, TheLargestPieceGoesOn) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

@@ -8,7 +8,7 @@
 #include "life/edits.hpp"
 #include "support/messages.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 using testing::naming;
@@ -276,4 +276,4 @@ TEST(Development, FaultyEditsAreRefused) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

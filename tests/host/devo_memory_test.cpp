@@ -11,7 +11,7 @@
 #include "support/scratch.hpp"
 #include "support/told.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 using testing::add_mass;
@@ -315,4 +315,4 @@ TEST(DevoMemory, AResumedRunGivesTheSameRows) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

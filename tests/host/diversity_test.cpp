@@ -10,7 +10,7 @@
 #include "support/messages.hpp"
 #include "support/scratch.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 using ::testing::ElementsAre;
@@ -217,4 +217,4 @@ TEST(Labels, AreCountedByGeneration) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

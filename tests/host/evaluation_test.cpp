@@ -13,7 +13,7 @@
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 const Progress unwatched = [](double) {};
@@ -563,4 +563,4 @@ TEST(Evaluation, ResetPutsTheBodyOnRoughGroundAsAtBirth) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

@@ -14,7 +14,7 @@
 #include "support/messages.hpp"
 #include "support/scratch.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 /// A simulator whose device is lost when the lives of generation `lost` begin, counted from 0.
@@ -201,4 +201,4 @@ TEST(BestAndMedian, AreTheExtremeAndTheMiddle) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

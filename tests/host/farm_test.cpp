@@ -21,7 +21,7 @@
 #include "support/runs.hpp"
 #include "support/scratch.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 using std::chrono::milliseconds;
@@ -484,4 +484,4 @@ TEST(ShareOf, DividesEquallyOrShares) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

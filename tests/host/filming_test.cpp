@@ -12,7 +12,7 @@
 #include "evolution/breeding.hpp"
 #include "support/experiments.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 std::vector<Newborn> newborns_of(const std::vector<Individual>& individuals) {
@@ -162,4 +162,4 @@ TEST(Filming, RecordsWhatARunInOneGoRecords) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

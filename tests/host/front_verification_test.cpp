@@ -17,7 +17,7 @@
 #include "support/pairs.hpp"
 #include "support/scratch.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 using testing::exaggerated, testing::measured_step, testing::strain;
@@ -273,4 +273,4 @@ TEST(VerifyFront, IsRefusedIfTheFirstObjectiveIsMinimised) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

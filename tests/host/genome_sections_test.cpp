@@ -9,12 +9,12 @@
 #include "base/philox.hpp"
 #include "evodevo/blocks.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 
 Rng stream(std::uint64_t seed) { return Rng(philox, {seed, 0, 0, 0}); }
 
@@ -254,4 +254,4 @@ TEST(Sections, HaveReferencesOfTheirOwn) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

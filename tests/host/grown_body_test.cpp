@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 /// Returns `p` rotated by the angle `angle` about the z axis and then about the x axis, and shifted.
@@ -113,4 +113,4 @@ TEST(GrowthObserver, ABodyWithoutExtentHasPlacesAllTheSame) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

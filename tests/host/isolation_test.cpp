@@ -12,7 +12,7 @@
 #include "support/messages.hpp"
 #include "support/scratch.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 constexpr unsigned seconds = 60;
@@ -86,4 +86,4 @@ TEST(Isolation, WritesNothingTwice) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

@@ -17,7 +17,7 @@
 #include "support/messages.hpp"
 #include "support/scratch.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 /// An experiment with as many operators as possible, on bodies of some dozens of masses.
@@ -601,4 +601,4 @@ TEST_F(GoneOn, WithAnotherOperatorWarnsToo) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

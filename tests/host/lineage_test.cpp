@@ -7,7 +7,7 @@
 #include "evodevo/neat.hpp"
 #include "report/genes_json.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 using ::testing::ElementsAre;
@@ -76,4 +76,4 @@ TEST(Lineage, IsToldFromTheYoungestToTheOldest) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

@@ -12,7 +12,7 @@
 #include "support/messages.hpp"
 #include "support/scratch.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 using testing::naming;
@@ -224,4 +224,4 @@ TEST(Loader, AFolderThatIsNotThereIsNamed) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

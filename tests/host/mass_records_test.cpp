@@ -9,7 +9,7 @@
 #include "support/messages.hpp"
 #include "support/told.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 using testing::add_mass;
@@ -245,4 +245,4 @@ TEST(MassRecords, TheShuffledControlKeepsWhatIsKnownOfAMassTogether) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

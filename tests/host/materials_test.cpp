@@ -14,7 +14,7 @@
 #include "life/life_record.hpp"
 #include "support/experiments.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 using ::testing::ElementsAre;
@@ -160,4 +160,4 @@ factor = 0.93
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

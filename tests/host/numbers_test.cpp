@@ -6,7 +6,7 @@
 
 #include "base/text.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -44,4 +44,4 @@ TEST(Numbers, OfARangeAreItsEnds) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

@@ -15,7 +15,7 @@
 #include "support/messages.hpp"
 #include "support/scratch.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 std::string replaced(std::string text, const std::string& old, const std::string& by) {
@@ -229,4 +229,4 @@ TEST_F(NewParameters, RefuseWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

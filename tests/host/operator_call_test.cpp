@@ -14,7 +14,7 @@
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 const OperatorTitle* title(const char* name) { return lasting_title("devo", name, "/a folder (1)/ö.evodevo.so"); }
@@ -113,4 +113,4 @@ TEST(OperatorCall, KnowsWhoseLifeItIs) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

@@ -13,7 +13,7 @@
 
 #include "evodevo/plugin.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 namespace fs = std::filesystem;
@@ -171,4 +171,4 @@ constexpr Thing make(T value) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

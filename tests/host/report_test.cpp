@@ -21,7 +21,7 @@
 #include "support/experiments.hpp"
 #include "support/scratch.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 using ::testing::ElementsAre;
@@ -458,4 +458,4 @@ TEST(Report, SaysHowNearTheBestCameToTheTopSpeed) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 namespace fs = std::filesystem;
@@ -110,7 +110,7 @@ TEST(Rooms, OfTheCoreOpenOnlyTheOnesForCallers) {
     const bool is_device = opened == "kernels/cpu/simulator.hpp" || opened == "kernels/cuda/runtime/cuda_simulator.hpp";
     const bool enters = room_of(file).starts_with("framework/") && room_of(other).starts_with("kernels/");
     if (!enters || is_device) return;
-    EXPECT_THAT(open, testing::Contains(room_of(other))) << fs::relative(file, source) << " includes " << other;
+    EXPECT_THAT(open, ::testing::Contains(room_of(other))) << fs::relative(file, source) << " includes " << other;
   });
 }
 
@@ -125,4 +125,4 @@ TEST(Rooms, HaveNoLongFiles) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

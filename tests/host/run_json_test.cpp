@@ -14,7 +14,7 @@
 #include "support/experiments.hpp"
 #include "support/scratch.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 using ::testing::ElementsAre;
@@ -190,4 +190,4 @@ TEST_F(RunJson, AReportHasTheScoresOfTheLivingAndTheBestInEachObjective) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

@@ -13,7 +13,7 @@
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 const Progress unwatched = [](double) {};
@@ -538,4 +538,4 @@ TEST(Roles, AreReadFromTheOperators) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

@@ -7,7 +7,7 @@
 
 #include "base/philox.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 using Distances = std::vector<std::vector<double>>;
@@ -60,4 +60,4 @@ TEST(SceneEffect, OfOneBodyIsADistanceAndNoMore) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

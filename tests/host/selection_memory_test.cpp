@@ -16,7 +16,7 @@
 #include "support/messages.hpp"
 #include "support/scratch.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 /// Remembers how often it was called, and notes that about the first row. It could also note a sum.
@@ -217,4 +217,4 @@ TEST(Memory, ThatIsTooShortOrTooLongIsRefused) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

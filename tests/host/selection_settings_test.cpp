@@ -6,7 +6,7 @@
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 namespace fs = std::filesystem;
@@ -140,4 +140,4 @@ TEST(SelectionSettings, GenerationsHaveAsManyChildrenAsAsked) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

@@ -12,7 +12,7 @@
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 using ::testing::ElementsAre;
@@ -179,4 +179,4 @@ TEST_F(Making, FaultsOfTheOperatorAreNamed) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

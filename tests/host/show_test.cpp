@@ -12,7 +12,7 @@
 #include "support/experiments.hpp"
 #include "support/scratch.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 /// Returns what `show` prints of a run of `count` generations, in each of which one individual is born.
@@ -62,4 +62,4 @@ TEST(Show, NamesObjectivesIfThereAreSeveral) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

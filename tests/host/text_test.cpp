@@ -8,7 +8,7 @@
 #include "base/json_text.hpp"
 #include "support/messages.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 TEST(Printable, KeepsTextAsItIs) {
@@ -77,4 +77,4 @@ TEST(JsonText, IsOneLineIfAskedForWhateverALineIs) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

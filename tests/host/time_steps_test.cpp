@@ -8,7 +8,7 @@
 #include "core/simulator.hpp"
 #include "support/messages.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 /// One mass with 399 springs of 10,000 N/m, all in nearly the same direction: omega^2 is about 399 k/m, and 2/omega is
@@ -96,4 +96,4 @@ TEST(TimeSteps, StepsDivideTheirDuration) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

@@ -10,7 +10,7 @@
 #include "life/evaluation.hpp"
 #include "support/experiments.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 const Scene hillside{.gravity = Gravity{3.71, 12.3},
@@ -117,4 +117,4 @@ TEST(TopSpeed, IsAboveThatOfVigorousRobots) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

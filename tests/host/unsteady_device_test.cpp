@@ -13,7 +13,7 @@
 #include "support/runs.hpp"
 #include "support/scratch.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 /// Lets its callers yield to other threads a random number of times.
@@ -144,4 +144,4 @@ TEST(UnsteadyIslands, GiveTheResultsOfACalmDevice) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

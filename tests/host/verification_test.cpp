@@ -16,7 +16,7 @@
 #include "support/messages.hpp"
 #include "support/scratch.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 const Progress unwatched = [](double) {};
@@ -361,4 +361,4 @@ TEST(Verify, TheFirstMarkNamesItsTrial) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

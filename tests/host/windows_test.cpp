@@ -13,7 +13,7 @@
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 const Progress unwatched = [](double) {};
@@ -329,4 +329,4 @@ TEST(Windows, ShowPartsByTheirIndices) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

@@ -7,7 +7,7 @@
 #include "cluster/messages.hpp"
 #include "support/messages.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 TEST(Wire, RefusesABooleanThatIsNeither) {
@@ -63,4 +63,4 @@ TEST(Wire, RefusesMoreValuesThanThereAreBytes) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

@@ -4,7 +4,7 @@
 
 #include "life.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 /// A chain of 40 springs, alternately of bone and muscle. Spring s has a stress of s N.
@@ -28,7 +28,7 @@ struct Property {
   double low, high;  ///< bounds set in the tests; the values in the chain lie between them
 };
 
-class Adaptation : public testing::TestWithParam<Property> {
+class Adaptation : public ::testing::TestWithParam<Property> {
  protected:
   std::unique_ptr<Devo> make_with(double factor, std::int64_t springs = 5) const {
     return make<Devo>(GetParam().name, "springs = " + std::to_string(springs) + "\nfactor = " + std::to_string(factor) +
@@ -121,11 +121,11 @@ TEST_P(Adaptation, RefusesParametersThatDoNotGoTogether) {
     }
     return std::string("accepted");
   };
-  EXPECT_THAT(complaint("factor = 1.0"),
-              testing::AllOf(testing::StartsWith("test.toml:1:10: test.factor = 1: "), testing::HasSubstr("expected")));
+  EXPECT_THAT(complaint("factor = 1.0"), ::testing::AllOf(::testing::StartsWith("test.toml:1:10: test.factor = 1: "),
+                                                          ::testing::HasSubstr("expected")));
   const std::string low = std::to_string(GetParam().high), high = std::to_string(GetParam().low);
   EXPECT_THAT(complaint("high = " + high + "\nlow = " + low),
-              testing::AllOf(testing::StartsWith("test.toml:2:7: test.low = "), testing::HasSubstr("high")));
+              ::testing::AllOf(::testing::StartsWith("test.toml:2:7: test.low = "), ::testing::HasSubstr("high")));
   EXPECT_EQ(complaint("high = " + low + "\nlow = " + low), "accepted") << "a bound from both sides";
 }
 
@@ -135,9 +135,9 @@ TEST_P(Adaptation, DegenerateBodiesStayAsTheyAre) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Properties, Adaptation,
-                         testing::Values(Property{"length-adaptation", relative_length, false, 0.5, 2},
-                                         Property{"stiffness-adaptation", stiffness, false, 2000, 30'000},
-                                         Property{"amplitude-adaptation", amplitude, true, 0.05, 0.5}),
+                         ::testing::Values(Property{"length-adaptation", relative_length, false, 0.5, 2},
+                                           Property{"stiffness-adaptation", stiffness, false, 2000, 30'000},
+                                           Property{"amplitude-adaptation", amplitude, true, 0.05, 0.5}),
                          [](const auto& tested) {
                            std::string name = tested.param.name;
                            return name.substr(0, name.find('-'));
@@ -178,4 +178,4 @@ TEST(LengthAdaptation, SpringsThatCameWithoutLengthStay) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

@@ -5,7 +5,7 @@
 #include "life.hpp"
 #include "life/body_building.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 /// Operators with parameters; each operator occurs at least once.
@@ -112,4 +112,4 @@ TEST(AnyDevo, OperatorsThatChangeDifferentThingsDoNotDependOnTheirOrder) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

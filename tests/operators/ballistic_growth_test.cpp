@@ -1,6 +1,6 @@
 #include "life.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 /// A chain of four springs, of which the first grows and the second shrinks.
@@ -75,4 +75,4 @@ TEST(BallisticGrowth, BodiesWithoutGrowthStayAsTheyAre) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

@@ -1,6 +1,6 @@
 #include "life.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 /// A chain of four muscles, of which the first turns forwards and the second backwards, and a passive spring that would
@@ -110,4 +110,4 @@ TEST(BallisticPhase, BodiesWithoutPhasesStayAsTheyAre) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

@@ -2,7 +2,7 @@
 #include "cloud.hpp"
 #include "support/messages.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 using CloudFile = FromFile;
@@ -138,4 +138,4 @@ TEST_F(CloudFile, BearsAnyCutAndAnyChangedByte) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

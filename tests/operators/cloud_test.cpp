@@ -9,7 +9,7 @@
 #include "base/genome_sections.hpp"
 #include "support/messages.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 using Cloud = FromFile;
@@ -189,4 +189,4 @@ TEST_F(Cloud, RefusesMoreSitesThanMost) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

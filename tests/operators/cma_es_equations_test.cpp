@@ -7,7 +7,7 @@
 #include "evodevo/helpers/selection/cma_es.hpp"
 #include "support.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 /// CMA-ES in one dimension, where all vectors and matrices are numbers, with the tutorial's symbols.
@@ -103,4 +103,4 @@ TEST(CmaSettings, FulfilWhatTheTutorialSaysOfThem) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

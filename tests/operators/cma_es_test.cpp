@@ -6,7 +6,7 @@
 
 #include "support.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 using Point = std::vector<double>;
@@ -314,4 +314,4 @@ TEST(CmaEs, ThePathStaysInProportionWhenTheDistributionIsLimited) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

@@ -4,7 +4,7 @@
 #include "experiment/toml_writer.hpp"
 #include "support.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 /// Checks each parameter when it is declared.
@@ -73,7 +73,7 @@ class DeclarationCheck final : public Parameters {
 
 TEST(BuiltIn, AllOperatorsLoad) {
   EXPECT_TRUE(registry().failed().empty()) << registry().failed().front().reason;
-  using testing::ElementsAre;
+  using ::testing::ElementsAre;
   EXPECT_THAT(registry().names("encoding"),
               ElementsAre("cloud", "cppn", "direct", "neat", "neural", "regulatory", "voxel"));
   EXPECT_THAT(registry().names("mutation"), ElementsAre("add-block", "add-link", "add-node", "block-rates",
@@ -118,4 +118,4 @@ TEST(BuiltIn, PapersValuesAreTheDefaults) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

@@ -5,7 +5,7 @@
 #include "evodevo/lattice.hpp"
 #include "support.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 /// Returns all values of a blueprint in one list, for comparisons.
@@ -30,7 +30,7 @@ void expect_blocks_cover_genes_once(const Layout& layout) {
   EXPECT_EQ(next, layout.first_size());
 }
 
-class AnyEncoding : public testing::TestWithParam<const char*> {};
+class AnyEncoding : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(AnyEncoding, SameGenomeSameBodyOnAnyThread) {
   const auto encoding = make<Encoding>(GetParam());
@@ -61,10 +61,10 @@ TEST_P(AnyEncoding, AirAloneIsNoBody) {
   const auto encoding = make<Encoding>(GetParam(), "materials = ['air']");
   Rng rng = stream(3);
   const Genome genome = encoding->random(encoding->layout(context()), rng);
-  EXPECT_THAT(decoded(*encoding, genome).failure, testing::HasSubstr("air"));
+  EXPECT_THAT(decoded(*encoding, genome).failure, ::testing::HasSubstr("air"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Encodings, AnyEncoding, testing::Values("neural", "cppn", "neat", "voxel", "direct"));
+INSTANTIATE_TEST_SUITE_P(Encodings, AnyEncoding, ::testing::Values("neural", "cppn", "neat", "voxel", "direct"));
 
 // neural -------------------------------------------------------------------------------------------------------------
 
@@ -75,7 +75,7 @@ TEST(Neural, HasThePapersGenes) {
   ASSERT_EQ(layout.first_blocks.size(), 58u);
   for (std::size_t n = 0; n < 58; ++n) EXPECT_EQ(layout.first_blocks[n].count, n < 25 ? 4u : 26u);
   ASSERT_EQ(layout.types.size(), 1u);
-  EXPECT_THAT(layout.types[0].genes, testing::ElementsAre(GeneSpec{-1, 1}));
+  EXPECT_THAT(layout.types[0].genes, ::testing::ElementsAre(GeneSpec{-1, 1}));
 }
 
 TEST(Neural, OneOutputForEachMaterialToChooseFrom) {
@@ -86,7 +86,7 @@ TEST(Neural, OneOutputForEachMaterialToChooseFrom) {
   Rng rng = stream(1);
   for (int i = 0; i < 20; ++i)
     for (const Mass& mass : decoded(*encoding, encoding->random(layout, rng)).body.masses) ++seen[mass.material];
-  EXPECT_THAT(seen, testing::ElementsAre(testing::Key(bone), testing::Key(tissue)));
+  EXPECT_THAT(seen, ::testing::ElementsAre(::testing::Key(bone), ::testing::Key(tissue)));
 }
 
 TEST(Neural, BiasesOfTheOutputsAloneSetPlaceAndMaterial) {
@@ -220,11 +220,11 @@ TEST(Neural, GenesThatAreNoNumbersAreNoBody) {
     Genome genome(958, 0.5f);
     genome[500] = value;
     EXPECT_THAT(decoded(*encoding, genome).failure,
-                testing::AllOf(testing::HasSubstr("gene"), testing::HasSubstr("not finite")));
+                ::testing::AllOf(::testing::HasSubstr("gene"), ::testing::HasSubstr("not finite")));
   }
 }
 
-class AnyNetwork : public testing::TestWithParam<const char*> {};
+class AnyNetwork : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(AnyNetwork, PairsBeforeTheMappingAreThoseOfThePoints) {
   const auto after = make<Encoding>(GetParam()), before = make<Encoding>(GetParam(), "pairing = 'before-mapping'");
@@ -281,7 +281,7 @@ TEST_P(AnyNetwork, SizesStayInTheirRangeWhateverTheGenes) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Networks, AnyNetwork, testing::Values("neural", "cppn"));
+INSTANTIATE_TEST_SUITE_P(Networks, AnyNetwork, ::testing::Values("neural", "cppn"));
 
 // cppn ---------------------------------------------------------------------------------------------------------------
 
@@ -447,7 +447,7 @@ TEST(Voxel, WithoutGrowthThereIsOneGeneForEachSizeAndPhase) {
   const auto encoding = make<Encoding>("voxel", "size = [1, 1, 1]\nsize_range = 0.5\nphase_range = 1.0\ngrows = false");
   const Layout layout = encoding->layout(context());
   EXPECT_EQ(layout.first_size(), 3u);
-  EXPECT_THAT(layout.types[0].gene_names, testing::ElementsAre("phase at birth", "material", "size at birth"));
+  EXPECT_THAT(layout.types[0].gene_names, ::testing::ElementsAre("phase at birth", "material", "size at birth"));
   EXPECT_FALSE(encoding->sets_growth());
   for (const Spring& spring : decoded(*encoding, {0.25f, muscle, 1.5f}).body.springs) {
     EXPECT_EQ(spring.growth, 1);
@@ -555,7 +555,7 @@ TEST(Direct, EverySpringHasAGene) {
   EXPECT_EQ(one.first_size(), 28u);
   std::vector<std::uint32_t> counts;
   for (const Block& group : one.first_blocks) counts.push_back(group.count);
-  EXPECT_THAT(counts, testing::ElementsAre(7, 6, 5, 4, 3, 2, 1));
+  EXPECT_THAT(counts, ::testing::ElementsAre(7, 6, 5, 4, 3, 2, 1));
   EXPECT_EQ(make<Encoding>("direct", "size = [2, 1, 1]")->layout(context()).first_size(), 50u);
   // the body of the paper's benchmark, section V-A
   EXPECT_EQ(make<Encoding>("direct", "size = [10, 10, 10]")->layout(context()).first_size(), 14230u);
@@ -583,4 +583,4 @@ TEST(Direct, GenesStandInTheOrderOfTheSprings) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

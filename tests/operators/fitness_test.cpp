@@ -3,7 +3,7 @@
 
 #include "support.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 /// An observation of a body that is 2 m long and moves by (3, 4, 1) m; `offset` shifts it.
@@ -72,7 +72,7 @@ TEST(Distance, AsksForItsWindow) {
 TEST(Distance, RefusesNoDirection) {
   const auto fitness = make<Fitness>("distance", "direction = [0, 0, 0]");
   EXPECT_THAT([&] { fitness->observes(); },
-              testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr("direction")));
+              ::testing::ThrowsMessage<std::invalid_argument>(::testing::HasSubstr("direction")));
 }
 
 TEST(Distance, IsToBeGreat) {
@@ -175,7 +175,7 @@ TEST(Efficiency, IsTheWayForTheWork) {
   EXPECT_DOUBLE_EQ(score("least_work = 0.5", 0), 3.0 / 0.5);
   EXPECT_TRUE(std::isnan(score("", std::nan(""))));
   EXPECT_THAT([] { make<Fitness>("efficiency", "direction = [0, 0, 0]")->observes(); },
-              testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr("direction")));
+              ::testing::ThrowsMessage<std::invalid_argument>(::testing::HasSubstr("direction")));
 }
 
 TEST(Descriptor, HasARangeAndTheRoleOfOne) {
@@ -191,7 +191,7 @@ TEST(Descriptor, HasARangeAndTheRoleOfOne) {
   }
   for (const char* range : {"[1.0]", "[2.0, 1.0]", "[1.0, 1.0]", "[1.0, 2.0, 3.0]"})
     EXPECT_THAT([&] { make<Fitness>("descriptor", std::string("range = ") + range); },
-                testing::ThrowsMessage<InputError>(testing::HasSubstr("range")));
+                ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("range")));
 }
 
 TEST(Descriptor, IsTheMeanOverTheWindow) {
@@ -220,4 +220,4 @@ TEST(Descriptor, IsTheMeanOverTheWindow) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

@@ -5,7 +5,7 @@
 #include "evodevo/helpers/pareto.hpp"
 #include "evolution.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -213,8 +213,8 @@ TEST(Nsga2, TheLeastInfeasibleBreedAmongTheFailed) {
 TEST(Nsga2, TheLeastInfeasibleSurviveAmongTheFailed) {
   const auto selection = make<Selection>("nsga2");
   Table table{.rows = {{.violation = 3}, {.violation = 1}, {.violation = 2}, {.scores = {1, 1}}}};
-  EXPECT_THAT(table.survive(*selection, 2).rows, testing::UnorderedElementsAre(3, 1));
+  EXPECT_THAT(table.survive(*selection, 2).rows, ::testing::UnorderedElementsAre(3, 1));
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

@@ -3,11 +3,11 @@
 
 #include "life.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
-using testing::DoubleNear;
-using testing::ElementsAre;
+using ::testing::DoubleNear;
+using ::testing::ElementsAre;
 
 /// A chain of four masses and three springs of bone, muscle and tissue.
 Life chain(std::vector<double> tension, std::vector<double> work) {
@@ -105,4 +105,4 @@ TEST(Hebbian, StiffnessStaysWithinItsBounds) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

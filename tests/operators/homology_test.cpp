@@ -3,7 +3,7 @@
 
 #include "support.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 /// A node has one real gene in [0, 10]; a link has a choice of three and a reference to a node.
@@ -65,4 +65,4 @@ TEST(GenomeDistance, OfFixedLayoutsComparesAllGenes) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

@@ -3,7 +3,7 @@
 
 #include "support.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 using Table = std::vector<std::vector<double>>;
@@ -94,4 +94,4 @@ TEST(MedianDeviations, AreThoseOfEachCase) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

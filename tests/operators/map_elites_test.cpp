@@ -5,7 +5,7 @@
 #include "evodevo/helpers/selection/niches.hpp"
 #include "evolution.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 std::vector<Objective> ranges_with(std::uint32_t bins) {
@@ -113,7 +113,7 @@ TEST(MapElites, TheWorstElitesDieIfThereAreTooFewPlaces) {
                              {.scores = {8}, .descriptors = {1.8, 0}},
                              {.scores = {5}, .descriptors = {0.6, 0}}},
                     .descriptors = ranges};
-  EXPECT_THAT(table.survive(*selection, 2).rows, testing::ElementsAre(1, 3));
+  EXPECT_THAT(table.survive(*selection, 2).rows, ::testing::ElementsAre(1, 3));
 }
 
 TEST(MapElites, WhatLiesFarOutsideBelongsToTheNearestCell) {
@@ -124,7 +124,7 @@ TEST(MapElites, WhatLiesFarOutsideBelongsToTheNearestCell) {
                                {.scores = {3}, .descriptors = {1.7e308, 0.1}, .id = 2},
                                {.scores = {4}, .descriptors = {-1.7e308, 0.1}, .id = 3}},
                       .descriptors = ranges};
-    EXPECT_THAT(table.survive(*selection, 4).rows, testing::ElementsAre(3, 2)) << cells;
+    EXPECT_THAT(table.survive(*selection, 4).rows, ::testing::ElementsAre(3, 2)) << cells;
   }
 }
 
@@ -134,14 +134,14 @@ TEST(MapElites, AMemoryThatIsNotItsOwnIsRefused) {
   table.memory = table.survive(*selection, 5).memory;
   table.descriptors.pop_back();
   EXPECT_THAT([&] { table.survive(*selection, 5); },
-              testing::ThrowsMessage<std::runtime_error>(testing::HasSubstr("1 descriptors")));
+              ::testing::ThrowsMessage<std::runtime_error>(::testing::HasSubstr("1 descriptors")));
 }
 
 TEST(MapElites, LifeGoesOnWhereAllFailed) {
   for (const char* cells : {"grid", "centroidal"}) {
     const auto selection = make<Selection>("map-elites", std::string("cells = \"") + cells + "\"\ncount = 5");
     const Table table{.rows = {{}, {}, {}}, .descriptors = ranges};
-    EXPECT_THAT(table.survive(*selection, 2).rows, testing::SizeIs(2));
+    EXPECT_THAT(table.survive(*selection, 2).rows, ::testing::SizeIs(2));
   }
 }
 
@@ -168,4 +168,4 @@ TEST(MapElites, FillsTheMapWithItsBest) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

@@ -3,7 +3,7 @@
 
 #include "regulation.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 double new_stiffness(const Body& body, const ChangedSpring& change) {
@@ -68,7 +68,7 @@ TEST(MassActs, DaughtersLieWhereThereIsRoom) {
     ASSERT_EQ(one.new_masses.size(), 1u);
     EXPECT_GE(one.new_masses[0].position.z, 0);
     EXPECT_LE(norm(one.new_masses[0].position - life.living.state.position[1]), 0.25 + 1e-12);
-    EXPECT_THAT(one.new_springs, testing::SizeIs(3));
+    EXPECT_THAT(one.new_springs, ::testing::SizeIs(3));
     places.insert(one.new_masses[0].position.x);
   }
   EXPECT_EQ(places.size(), 20u);
@@ -163,7 +163,7 @@ TEST(MassActs, OnesThatAreHeldBackGiveTheirTurnsToOthers) {
   life.add_spring(3, 5, bone, 0.5);
   life.own = genes(*devo, {{"let go", "contact", 1}});
   life.contact = {0, 1, 0, 0.5, 0, 0};
-  EXPECT_THAT(develop(*devo, life, 1).removed_springs, testing::ElementsAre(4)) << "mass 1 wanted it most";
+  EXPECT_THAT(develop(*devo, life, 1).removed_springs, ::testing::ElementsAre(4)) << "mass 1 wanted it most";
 }
 
 TEST(MassActs, DegenerateBodiesStayAsTheyAre) {
@@ -188,4 +188,4 @@ TEST(MassActs, DegenerateBodiesStayAsTheyAre) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

@@ -1,6 +1,6 @@
 #include "life.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 TEST(MassGrowth, MassesComeAndNoneGoes) {
@@ -25,7 +25,7 @@ TEST(MassGrowth, EndsAtTheLimit) {
     life.living = after(life, develop(*devo, life, application));
     sizes.push_back(life.living.body.masses.size());
   }
-  EXPECT_THAT(sizes, testing::ElementsAre(11, 13, 13, 13));
+  EXPECT_THAT(sizes, ::testing::ElementsAre(11, 13, 13, 13));
   EXPECT_TRUE(digest(develop(*make<Devo>("mass-growth", "limit = 3"), life, 1)).empty()) << "nor does any go";
 }
 
@@ -81,4 +81,4 @@ TEST(MassGrowth, DegenerateBodiesStayAsTheyAre) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

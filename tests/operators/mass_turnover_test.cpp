@@ -1,6 +1,6 @@
 #include "life.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 constexpr std::uint32_t masses = 100;
@@ -25,7 +25,7 @@ TEST(MassTurnover, MassesOfFewSpringsGo) {
   const Life life = ring();
   const Edits edits = develop(*devo, life, 1);
   // neighbours of removed masses fall below the threshold too, but degrees were compared before the removal
-  EXPECT_THAT(edits.removed_masses, testing::UnorderedElementsAre(0, 1, 2, 3));
+  EXPECT_THAT(edits.removed_masses, ::testing::UnorderedElementsAre(0, 1, 2, 3));
   EXPECT_EQ(edits.removed_masses[0], 0u) << "fewest springs first";
   EXPECT_EQ(edits.new_masses.size(), 4u);
   EXPECT_TRUE(edits.removed_springs.empty());
@@ -38,7 +38,7 @@ TEST(MassTurnover, TheNumberOfItsSpringsIsWhyAMassGoes) {
   life.living.body.masses[0].air_contacts = 1;
   const Edits edits = develop(*devo, life, 1);
   ASSERT_EQ(edits.removed_masses.size(), 4u);
-  EXPECT_THAT(edits.causes.removed_masses, testing::ElementsAre(18, 19, 19, 19)) << "with contacts through air";
+  EXPECT_THAT(edits.causes.removed_masses, ::testing::ElementsAre(18, 19, 19, 19)) << "with contacts through air";
   const Measure measure = devo->measure(&Causes::removed_masses);
   EXPECT_EQ(measure.name, "degree");
   EXPECT_EQ(measure.unit, "springs");
@@ -47,7 +47,8 @@ TEST(MassTurnover, TheNumberOfItsSpringsIsWhyAMassGoes) {
 TEST(MassTurnover, ThresholdIsTheFewestSpringsThatStay) {
   const Life life = ring();
   EXPECT_TRUE(digest(develop(*make<Devo>("mass-turnover", "threshold = 17"), life, 1)).empty());
-  EXPECT_THAT(develop(*make<Devo>("mass-turnover", "threshold = 18"), life, 1).removed_masses, testing::ElementsAre(0));
+  EXPECT_THAT(develop(*make<Devo>("mass-turnover", "threshold = 18"), life, 1).removed_masses,
+              ::testing::ElementsAre(0));
   EXPECT_EQ(develop(*make<Devo>("mass-turnover", "threshold = 21"), life, 1).removed_masses.size(), 10u);
 }
 
@@ -69,7 +70,7 @@ TEST(MassTurnover, ContactsThroughAirCount) {
   Life life = ring();
   life.living.body.masses[0].air_contacts = 3;
   life.living.body.masses[2].air_contacts = 1;
-  EXPECT_THAT(develop(*make<Devo>("mass-turnover"), life, 1).removed_masses, testing::UnorderedElementsAre(1, 3));
+  EXPECT_THAT(develop(*make<Devo>("mass-turnover"), life, 1).removed_masses, ::testing::UnorderedElementsAre(1, 3));
 }
 
 TEST(MassTurnover, NewMassesLieInBoundsAndApart) {
@@ -117,7 +118,7 @@ TEST(MassTurnover, WithoutAFreePlaceTheMassStays) {
   Life narrow = life;
   narrow.bounds = {{10, 10, 10}, {11, 11, 11}};
   const Edits edits = develop(*make<Devo>("mass-turnover", "min_distance = 2.0\nsprings = 1000"), narrow, 1);
-  EXPECT_THAT(edits.removed_masses, testing::ElementsAre(0));
+  EXPECT_THAT(edits.removed_masses, ::testing::ElementsAre(0));
   EXPECT_EQ(edits.new_masses.size(), 1u);
   EXPECT_EQ(edits.new_springs.size(), masses - 1) << "those that were to go but stay are partners too";
 }
@@ -127,7 +128,7 @@ TEST(MassTurnover, OnlyMassesThatStayTakeUpRoom) {
   Life life = ring();
   const Vec3 place_of_the_gone = life.living.state.position[0], place_of_another = life.living.state.position[50];
   life.bounds = {place_of_the_gone, place_of_the_gone};
-  EXPECT_THAT(develop(*devo, life, 1).removed_masses, testing::ElementsAre(0));
+  EXPECT_THAT(develop(*devo, life, 1).removed_masses, ::testing::ElementsAre(0));
   life.bounds = {place_of_another, place_of_another};
   EXPECT_TRUE(develop(*devo, life, 1).removed_masses.empty());
 }
@@ -201,7 +202,7 @@ TEST(MassTurnover, MaterialsAreThoseOfTheBodyButNotAir) {
                                       materials[edits.new_masses[fresh - masses].material]));
     }
   }
-  EXPECT_THAT(seen, testing::ElementsAre(bone, muscle, muscle2, tissue));
+  EXPECT_THAT(seen, ::testing::ElementsAre(bone, muscle, muscle2, tissue));
 }
 
 TEST(MassTurnover, WithoutMaterialsOfMassesSpringsTakeThoseOfOthers) {
@@ -241,4 +242,4 @@ TEST(MassTurnover, DependsOnItsKeyAlone) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

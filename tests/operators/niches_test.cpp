@@ -6,7 +6,7 @@
 #include "evodevo/helpers/selection/novelty.hpp"
 #include "support.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 std::vector<Coordinates> random_places(Rng& rng, std::size_t count, std::size_t dimension) {
@@ -56,7 +56,7 @@ TEST(Neighbours, OfNothingAreNone) {
 
 TEST(Neighbours, MayLieAtOnePlace) {
   const Neighbours neighbours(std::vector<Coordinates>(50, Coordinates{0.25, 0.75}));
-  EXPECT_THAT(neighbours.nearest(Coordinates{0.25, 0.5}, 60), testing::SizeIs(50));
+  EXPECT_THAT(neighbours.nearest(Coordinates{0.25, 0.5}, 60), ::testing::SizeIs(50));
   EXPECT_EQ(neighbours.nearest(Coordinates{0.25, 0.5}, 60).back().distance, 0.25);
 }
 
@@ -86,8 +86,8 @@ TEST(GridCell, BordersAndWhatLiesOutsideBelongToTheNearestCell) {
 TEST(GridCell, MoreCellsThanNotesCanNumberAreRefused) {
   const Coordinates corner(17, 2.0);
   EXPECT_THAT([&] { grid_cell(corner, axes(std::vector<std::uint32_t>(17, 10))); },
-              testing::ThrowsMessage<std::invalid_argument>(testing::AllOf(
-                  testing::HasSubstr("17"), testing::HasSubstr("bins"), testing::HasSubstr("centroidal"))));
+              ::testing::ThrowsMessage<std::invalid_argument>(::testing::AllOf(
+                  ::testing::HasSubstr("17"), ::testing::HasSubstr("bins"), ::testing::HasSubstr("centroidal"))));
   EXPECT_EQ(grid_cell(Coordinates(53, 2.0), axes(std::vector<std::uint32_t>(53, 2))), (std::uint64_t{1} << 53) - 1);
 }
 
@@ -181,4 +181,4 @@ TEST(NoveltyOf, CopiesIsZeroAndThatOfTheAloneToo) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

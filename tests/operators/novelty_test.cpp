@@ -2,7 +2,7 @@
 #include "evodevo/helpers/selection/memory.hpp"
 #include "evolution.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 const std::vector<Objective> one_range{{"x", "m", true, Role::descriptor, 0, 10}};
@@ -34,7 +34,7 @@ TEST(NoveltySearch, TheMostDistantSurviveWhateverTheirScores) {
   Table table = at({0, 1, 1.5, 2, 9});
   table.rows[2].scores = {1000};
   const Survival survival = table.survive(*selection, 2);
-  EXPECT_THAT(survival.rows, testing::UnorderedElementsAre(0, 4));
+  EXPECT_THAT(survival.rows, ::testing::UnorderedElementsAre(0, 4));
   std::map<std::uint32_t, double> noted;
   for (const Note& note : survival.notes) noted[note.row] = note.value;
   // mean distances to the two nearest, relative to the range of 10
@@ -66,10 +66,10 @@ TEST(NoveltySearch, WhatIsInTheArchiveIsNotNovel) {
   Table table = at({9, 9.1});
   table.memory = table.survive(*selection, 2).memory;
   EXPECT_THAT(archived(table.memory),
-              testing::ElementsAre(testing::DoubleNear(9, 1e-9), testing::DoubleNear(9.1, 1e-9)));
+              ::testing::ElementsAre(::testing::DoubleNear(9, 1e-9), ::testing::DoubleNear(9.1, 1e-9)));
   table.rows = at({2, 3, 9}).rows;
   for (Individual& one : table.rows) one.id += 100;
-  EXPECT_THAT(table.survive(*selection, 2).rows, testing::UnorderedElementsAre(0, 1));
+  EXPECT_THAT(table.survive(*selection, 2).rows, ::testing::UnorderedElementsAre(0, 1));
 }
 
 TEST(NoveltySearch, ThoseInTheArchiveWhoAreAliveCountOnce) {
@@ -92,16 +92,16 @@ TEST(NoveltySearch, ForgetsThoseInTheArchiveWhoLoseTheirFitness) {
   ASSERT_EQ(archived(table.memory).size(), 4u);
   for (Individual& one : table.rows) one.is_newborn = false;
   table.rows[1] = {.id = 1};
-  EXPECT_THAT(
-      archived(table.survive(*selection, 4).memory),
-      testing::ElementsAre(testing::DoubleNear(1, 1e-9), testing::DoubleNear(4, 1e-9), testing::DoubleNear(8, 1e-9)));
+  EXPECT_THAT(archived(table.survive(*selection, 4).memory),
+              ::testing::ElementsAre(::testing::DoubleNear(1, 1e-9), ::testing::DoubleNear(4, 1e-9),
+                                     ::testing::DoubleNear(8, 1e-9)));
 }
 
 TEST(NoveltySearch, BearsTheGreatestDescriptors) {
   const auto selection = make<Selection>("novelty", "neighbours = 1\narchived = 1");
   Table table = at({1e300, -1e308, 1.7e308, 1, 2});
   const Survival survival = table.survive(*selection, 3);
-  EXPECT_THAT(survival.rows, testing::Contains(1));
+  EXPECT_THAT(survival.rows, ::testing::Contains(1));
   ASSERT_EQ(survival.notes.size(), 5u);
   for (const Note& note : survival.notes) EXPECT_TRUE(std::isfinite(note.value)) << note.row;
 }
@@ -113,7 +113,7 @@ TEST(NoveltySearch, AMemoryThatIsNotItsOwnIsRefused) {
   table.descriptors.push_back(table.descriptors.front());
   for (Individual& one : table.rows) one.descriptors.push_back(1);
   EXPECT_THAT([&] { table.survive(*selection, 2); },
-              testing::ThrowsMessage<std::runtime_error>(testing::HasSubstr("2 descriptors")));
+              ::testing::ThrowsMessage<std::runtime_error>(::testing::HasSubstr("2 descriptors")));
 }
 
 TEST(NoveltySearch, TheArchiveGrowsByRandomNewborns) {
@@ -140,10 +140,10 @@ TEST(NoveltySearch, LocalCompetitionKeepsTheBestAmongNeighbours) {
   table.rows[4].scores = {3};
   table.rows[5].scores = {2};
   const auto alone = make<Selection>("novelty", "neighbours = 2\narchived = 0");
-  EXPECT_THAT(table.survive(*alone, 2).rows, testing::UnorderedElementsAre(3, 5));
+  EXPECT_THAT(table.survive(*alone, 2).rows, ::testing::UnorderedElementsAre(3, 5));
   // row 4 beats two neighbours, and row 5 one; row 1 also beats two, but is less novel than row 4
   const auto competing = make<Selection>("novelty", "neighbours = 2\narchived = 0\nlocal_competition = true");
-  EXPECT_THAT(table.survive(*competing, 2).rows, testing::UnorderedElementsAre(4, 5));
+  EXPECT_THAT(table.survive(*competing, 2).rows, ::testing::UnorderedElementsAre(4, 5));
 }
 
 TEST(NoveltySearch, FailedRowsComeLastAndAreNotNoted) {
@@ -152,7 +152,7 @@ TEST(NoveltySearch, FailedRowsComeLastAndAreNotNoted) {
   table.rows.push_back({.id = 3, .is_newborn = true, .violation = 2});
   table.rows.push_back({.id = 4, .is_newborn = true, .violation = 1});
   const Survival survival = table.survive(*selection, 4);
-  EXPECT_THAT(survival.rows, testing::UnorderedElementsAre(0, 1, 2, 4));
+  EXPECT_THAT(survival.rows, ::testing::UnorderedElementsAre(0, 1, 2, 4));
   for (const Note& note : survival.notes) EXPECT_LT(note.row, 3u);
 }
 
@@ -180,4 +180,4 @@ TEST(NoveltySearch, VisitsEverything) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

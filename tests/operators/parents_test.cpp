@@ -3,7 +3,7 @@
 
 #include "evolution.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 TEST(Tournament, TheBestOfSomeDrawsIsAParent) {
@@ -79,10 +79,10 @@ TEST(Comma, TheBestNewbornsSurvive) {
                              {.scores = {7}, .is_newborn = true},
                              {.scores = {5}, .is_newborn = true},
                              {.is_newborn = true}}};
-  EXPECT_THAT(table.survive(*selection, 2).rows, testing::UnorderedElementsAre(3, 4));
-  EXPECT_THAT(table.survive(*selection, 4).rows, testing::UnorderedElementsAre(3, 4, 2, 0))
+  EXPECT_THAT(table.survive(*selection, 2).rows, ::testing::UnorderedElementsAre(3, 4));
+  EXPECT_THAT(table.survive(*selection, 4).rows, ::testing::UnorderedElementsAre(3, 4, 2, 0))
       << "a place is left, which the best of the old takes before a newborn that failed";
-  EXPECT_THAT(table.survive(*selection, 10).rows, testing::SizeIs(6));
+  EXPECT_THAT(table.survive(*selection, 10).rows, ::testing::SizeIs(6));
 }
 
 TEST(Comma, LeavesNobodyAliveForTwoGenerations) {
@@ -104,4 +104,4 @@ TEST(Comma, LeavesNobodyAliveForTwoGenerations) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

@@ -3,7 +3,7 @@
 
 #include "support.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 /// Random points with many ties; about one in seven has failed.
@@ -117,23 +117,23 @@ TEST(LeastCrowded, EndsStayAndCrowdsThin) {
   // points on a line: 0 and 10 are the ends; 5 and 5.1 are close, and the other neighbour of 5.1 is closer to it than
   // the other neighbour of 5 is to 5
   const std::vector<Point> points{{0, 10}, {2, 8}, {5, 5}, {5.1, 4.9}, {7, 3}, {10, 0}};
-  EXPECT_THAT(least_crowded(points, {0, 1, 2, 3, 4, 5}, 5), testing::ElementsAre(0, 1, 2, 4, 5));
-  EXPECT_THAT(least_crowded(points, {0, 1, 2, 3, 4, 5}, 2), testing::ElementsAre(0, 5));
-  EXPECT_THAT(least_crowded(points, {0, 1, 2, 3, 4, 5}, 9), testing::SizeIs(6));
+  EXPECT_THAT(least_crowded(points, {0, 1, 2, 3, 4, 5}, 5), ::testing::ElementsAre(0, 1, 2, 4, 5));
+  EXPECT_THAT(least_crowded(points, {0, 1, 2, 3, 4, 5}, 2), ::testing::ElementsAre(0, 5));
+  EXPECT_THAT(least_crowded(points, {0, 1, 2, 3, 4, 5}, 9), ::testing::SizeIs(6));
 }
 
 TEST(LeastCrowded, CopiesGoFirstAndTheLastOfEqualsGoes) {
   const std::vector<Point> points{{1, 3}, {2, 2}, {2, 2}, {2, 2}, {3, 1}};
   EXPECT_THAT(least_crowded(points, {0, 1, 2, 3, 4}, 3), testing::IsSupersetOf({0, 4}));
   const std::vector<Point> equal(4, {1, 1}), failed(4);
-  EXPECT_THAT(least_crowded(equal, {0, 1, 2, 3}, 2), testing::ElementsAre(0, 1));
-  EXPECT_THAT(least_crowded(failed, {0, 1, 2, 3}, 2), testing::ElementsAre(0, 1));
+  EXPECT_THAT(least_crowded(equal, {0, 1, 2, 3}, 2), ::testing::ElementsAre(0, 1));
+  EXPECT_THAT(least_crowded(failed, {0, 1, 2, 3}, 2), ::testing::ElementsAre(0, 1));
 }
 
 TEST(LeastCrowded, BearsTheGreatestNumbers) {
   const std::vector<Point> points{{-1e308, 3}, {0, 2}, {1e307, 1}, {1e308, 0}};
-  EXPECT_THAT(least_crowded(points, {0, 1, 2, 3}, 3), testing::ElementsAre(0, 1, 3));
+  EXPECT_THAT(least_crowded(points, {0, 1, 2, 3}, 3), ::testing::ElementsAre(0, 1, 3));
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

@@ -4,12 +4,12 @@
 
 #include "regulation.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
-using testing::DoubleNear;
-using testing::ElementsAre;
-using testing::Pointwise;
+using ::testing::DoubleNear;
+using ::testing::ElementsAre;
+using ::testing::Pointwise;
 
 const std::vector<std::string> actions = {"divide", "stiffen", "let go", "reach"};
 const std::vector<std::string> feelings = {"bias",   "load",       "contact", "age",
@@ -217,4 +217,4 @@ TEST(RegulatedGrowth, RecordsThatAreNotFiniteCountAsZero) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

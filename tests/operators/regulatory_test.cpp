@@ -5,7 +5,7 @@
 #include "life/body_building.hpp"
 #include "support.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 using ::testing::SizeIs;
@@ -178,7 +178,7 @@ TEST_F(Regulatory, GenomesHaveRoomForAsManyGenesAsAsked) {
   EXPECT_EQ(most(""), 128u);
   EXPECT_EQ(most("genes = 7\nmost_genes = 7"), 7u);
   EXPECT_THAT([&] { most("genes = 8\nmost_genes = 7"); },
-              testing::ThrowsMessage<InputError>(testing::HasSubstr("most_genes")));
+              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("most_genes")));
 }
 
 TEST_F(Regulatory, RoomIsTheFractionOfFreeSites) {
@@ -208,4 +208,4 @@ TEST_F(Regulatory, RandomGenomesOftenGiveBodiesWithMusclesWhoseMassesDiffer) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

@@ -4,7 +4,7 @@
 #include "evodevo/helpers/selection/memory.hpp"
 #include "evolution.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 /// Real genes with different ranges, one of which is a point.
@@ -30,7 +30,7 @@ void expect_within(const Layout& layout, const Genome& genome) {
   }
 }
 
-class Sampler : public testing::TestWithParam<const char*> {
+class Sampler : public ::testing::TestWithParam<const char*> {
  protected:
   std::unique_ptr<Selection> selection = make<Selection>(GetParam());
 };
@@ -90,7 +90,7 @@ TEST_P(Sampler, PrefersTheLessInfeasibleUntilSomeoneIsFeasible) {
   EXPECT_NEAR(evolution.best(), -3.9 * 3.9, 0.5);
 }
 
-INSTANTIATE_TEST_SUITE_P(Samplers, Sampler, testing::Values("cma-es", "differential"));
+INSTANTIATE_TEST_SUITE_P(Samplers, Sampler, ::testing::Values("cma-es", "differential"));
 
 TEST(CmaEsSelection, LearnsFromNewbornsAlone) {
   const auto selection = make<Selection>("cma-es");
@@ -158,8 +158,8 @@ TEST(CmaEsSelection, GenesWithOneValueChangeNothing) {
   EXPECT_EQ(free_genes(true), free_genes(false));
   const Table fixed{.layout = real_genes(4, 3, 3)};
   EXPECT_THAT([&] { fixed.children(*selection, 1); },
-              testing::ThrowsMessage<std::runtime_error>(
-                  testing::AllOf(testing::HasSubstr(" 0 genes"), testing::HasSubstr("encoding"))));
+              ::testing::ThrowsMessage<std::runtime_error>(
+                  ::testing::AllOf(::testing::HasSubstr(" 0 genes"), ::testing::HasSubstr("encoding"))));
 }
 
 TEST(CmaEsSelection, AMemoryThatIsNotItsOwnIsRefused) {
@@ -177,9 +177,9 @@ TEST(CmaEsSelection, RefusesGenomesThatAreTooLong) {
     table.children(*selection, 1);
     FAIL();
   } catch (const std::runtime_error& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("1001"));
-    EXPECT_THAT(error.what(), testing::HasSubstr("1000"));
-    EXPECT_THAT(error.what(), testing::HasSubstr("differential"));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("1001"));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("1000"));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("differential"));
   }
 }
 
@@ -284,7 +284,7 @@ TEST(Differential, AChildTakesItsParentsPlaceUnlessItIsWorse) {
                              {.scores = {5.5}, .challenges = 1},
                              {.scores = {1}, .challenges = 2},
                              {.challenges = 3}}};
-  EXPECT_THAT(table.survive(*selection, 4).rows, testing::UnorderedElementsAre(4, 1, 6, 3));
+  EXPECT_THAT(table.survive(*selection, 4).rows, ::testing::UnorderedElementsAre(4, 1, 6, 3));
 }
 
 TEST(Differential, OfSeveralChildrenTheBestCompetes) {
@@ -294,7 +294,7 @@ TEST(Differential, OfSeveralChildrenTheBestCompetes) {
                              {.scores = {9}, .challenges = 0},
                              {.scores = {8}, .challenges = 0},
                              {.scores = {0}, .challenges = 1}}};
-  EXPECT_THAT(table.survive(*selection, 2).rows, testing::UnorderedElementsAre(2, 1));
+  EXPECT_THAT(table.survive(*selection, 2).rows, ::testing::UnorderedElementsAre(2, 1));
 }
 
 TEST(Differential, ThoseWhoFailedCompeteByTheirViolations) {
@@ -302,14 +302,14 @@ TEST(Differential, ThoseWhoFailedCompeteByTheirViolations) {
   const Table table{
       .rows = {
           {.violation = 1}, {.violation = 3}, {.violation = 2, .challenges = 0}, {.violation = 4, .challenges = 1}}};
-  EXPECT_THAT(table.survive(*selection, 2).rows, testing::UnorderedElementsAre(0, 1));
+  EXPECT_THAT(table.survive(*selection, 2).rows, ::testing::UnorderedElementsAre(0, 1));
 }
 
 TEST(Differential, LosersTakeThePlacesOfThoseWhoFailed) {
   const auto selection = make<Selection>("differential");
   const Table table{.rows = {{.scores = {5}}, {}, {.scores = {3}, .challenges = 0}, {.violation = 1, .challenges = 1}}};
-  EXPECT_THAT(table.survive(*selection, 2).rows, testing::UnorderedElementsAre(0, 2));
+  EXPECT_THAT(table.survive(*selection, 2).rows, ::testing::UnorderedElementsAre(0, 2));
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

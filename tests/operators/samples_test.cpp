@@ -13,7 +13,7 @@
 #include "support/channels.hpp"
 #include "support/messages.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 /// Two samples, 0.25 s apart, of a body of two masses and one spring. A third mass comes in between.
@@ -128,4 +128,4 @@ TEST_F(TwoSamples, RefuseWhatIsNotThere) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

@@ -4,7 +4,7 @@
 #include "evodevo/helpers/pareto.hpp"
 #include "support.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 /// A candidate for selection, with its own copy of the scores.
@@ -88,7 +88,7 @@ std::multiset<Row> pick(const std::vector<Row>& rows, const Indices& indices) {
   return picked;
 }
 
-class AnySelection : public testing::TestWithParam<const char*> {
+class AnySelection : public ::testing::TestWithParam<const char*> {
  protected:
   std::unique_ptr<Selection> selection = make<Selection>(GetParam());
 };
@@ -187,7 +187,7 @@ TEST_P(AnySelection, DependsOnItsKeyAlone) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Selections, AnySelection,
-                         testing::Values("age-fitness-pareto", "pareto-layers", "elitist", "nsga2"));
+                         ::testing::Values("age-fitness-pareto", "pareto-layers", "elitist", "nsga2"));
 
 /// Returns how often each of ten rows, best first, is a parent, in percent.
 std::vector<double> shares(const Selection& selection) {
@@ -218,10 +218,10 @@ TEST(Elitist, ParentsAreWinnersOfTournaments) {
 
 TEST(Elitist, KeepsTheBest) {
   const auto selection = make<Selection>("elitist");
-  EXPECT_THAT(survivors(*selection, {{{1, 9}}, {{5, 0}}, {}, {{-3, 9}}, {{4, 0}}}, 3), testing::ElementsAre(1, 4, 0));
+  EXPECT_THAT(survivors(*selection, {{{1, 9}}, {{5, 0}}, {}, {{-3, 9}}, {{4, 0}}}, 3), ::testing::ElementsAre(1, 4, 0));
   // ties are decided by further scores, then by lower age, then by earlier birth
   EXPECT_THAT(survivors(*selection, {{{1, 1}, 5}, {{1, 2}, 9}, {{1, 1}, 3}, {{1, 1}, 3}}, 3),
-              testing::ElementsAre(1, 2, 3));
+              ::testing::ElementsAre(1, 2, 3));
 }
 
 TEST(AgeFitnessPareto, KeepsWholeLayersFirst) {
@@ -243,14 +243,14 @@ TEST(AgeFitnessPareto, SparesTheYoung) {
   const auto selection = make<Selection>("age-fitness-pareto");
   // the weak random individual 3 is on the front; the older copy of row 1 is not
   EXPECT_THAT(survivors(*selection, {{{9}, 40}, {{5}, 10}, {{5}, 11}, {{0.1}, 0}}, 3),
-              testing::UnorderedElementsAre(0, 1, 3));
+              ::testing::UnorderedElementsAre(0, 1, 3));
 }
 
 TEST(AgeFitnessPareto, ThinsTheCrowd) {
   const auto selection = make<Selection>("age-fitness-pareto");
   // all rows are on the front; rows 2 and 3 are close to each other
   EXPECT_THAT(survivors(*selection, {{{0}, 0}, {{30}, 30}, {{50}, 50}, {{51}, 51}, {{80}, 80}, {{100}, 100}}, 5),
-              testing::AllOf(testing::SizeIs(5), testing::IsSupersetOf({0, 1, 4, 5})));
+              ::testing::AllOf(::testing::SizeIs(5), ::testing::IsSupersetOf({0, 1, 4, 5})));
 }
 
 // pareto-layers ------------------------------------------------------------------------------------------------------
@@ -262,39 +262,39 @@ TEST(ParetoLayers, AChildTakesItsParentsPlaceOnlyIfBetter) {
   const auto selection = make<Selection>("pareto-layers");
   // row 1 loses to its child 3; row 2 keeps its place against its child 4, although row 1 is better than both of them
   EXPECT_THAT(survivors(*selection, {champion, {{50}, 3}, {{10}, 3}, {{60}, 3, 1}, {{9}, 3, 2}}, 3),
-              testing::UnorderedElementsAre(0, 3, 2));
+              ::testing::UnorderedElementsAre(0, 3, 2));
 }
 
 TEST(ParetoLayers, AHigherLayerBeatsAHigherFitness) {
   const auto selection = make<Selection>("pareto-layers");
   // row 1 is dominated by row 2, row 3 only by the champion
   EXPECT_THAT(survivors(*selection, {champion, {{50}, 9}, {{60}, 8}, {{20}, 2, 1}}, 3),
-              testing::UnorderedElementsAre(0, 2, 3));
+              ::testing::UnorderedElementsAre(0, 2, 3));
 }
 
 TEST(ParetoLayers, EqualsDoNotReplace) {
   const auto selection = make<Selection>("pareto-layers");
-  EXPECT_THAT(survivors(*selection, {champion, {{50}, 3}, {{50}, 3, 1}}, 2), testing::UnorderedElementsAre(0, 1));
+  EXPECT_THAT(survivors(*selection, {champion, {{50}, 3}, {{50}, 3, 1}}, 2), ::testing::UnorderedElementsAre(0, 1));
 }
 
 TEST(ParetoLayers, OfSeveralChildrenTheBestTakesThePlace) {
   const auto selection = make<Selection>("pareto-layers");
   EXPECT_THAT(survivors(*selection, {champion, {{10}, 3}, {{5}, 3}, {{20}, 3, 1}, {{30}, 3, 1}}, 3),
-              testing::UnorderedElementsAre(0, 4, 2));
+              ::testing::UnorderedElementsAre(0, 4, 2));
 }
 
 TEST(ParetoLayers, TheFrontIsExempt) {
   const auto selection = make<Selection>("pareto-layers");
   // row 2 is weaker than its parent 1 but younger, so both are on the front; the worst of the others is removed
   EXPECT_THAT(survivors(*selection, {{{100}, 9}, {{50}, 5}, {{40}, 4, 1}, {{30}, 6}, {{20}, 6}}, 4),
-              testing::UnorderedElementsAre(0, 1, 2, 3));
+              ::testing::UnorderedElementsAre(0, 1, 2, 3));
 }
 
 TEST(ParetoLayers, TheMostCrowdedOfTooLargeAFrontGo) {
   const auto selection = make<Selection>("pareto-layers");
   EXPECT_THAT(
       survivors(*selection, {{{0}, 0}, {{30}, 30}, {{50}, 50}, {{51}, 51}, {{80}, 80}, {{100}, 100}, {{1}, 90}}, 5),
-      testing::AllOf(testing::SizeIs(5), testing::IsSupersetOf({0, 1, 4, 5})));
+      ::testing::AllOf(::testing::SizeIs(5), ::testing::IsSupersetOf({0, 1, 4, 5})));
 }
 
 TEST(ParetoLayers, NewcomersChallengeTheWorst) {
@@ -302,31 +302,31 @@ TEST(ParetoLayers, NewcomersChallengeTheWorst) {
   // in the first table, the random individual 3, which is as old as the champion, replaces the worst row; in the second
   // table, it is the worst row itself
   EXPECT_THAT(survivors(*selection, {champion, {{50}, 3}, {{10}, 3}, {{20}, 0}}, 3),
-              testing::UnorderedElementsAre(0, 1, 3));
+              ::testing::UnorderedElementsAre(0, 1, 3));
   EXPECT_THAT(survivors(*selection, {champion, {{50}, 3}, {{10}, 3}, {{5}, 4}}, 3),
-              testing::UnorderedElementsAre(0, 1, 2));
+              ::testing::UnorderedElementsAre(0, 1, 2));
 }
 
 TEST(ParetoLayers, AgeIsAnObjectiveUnlessToldOtherwise) {
   const std::vector<Row> rows{{{100}, 9}, {{50}, 5}, {{1}, 0}};
   EXPECT_THAT(survivors(*make<Selection>("pareto-layers", "age = false"), rows, 2),
-              testing::UnorderedElementsAre(0, 1));
+              ::testing::UnorderedElementsAre(0, 1));
   // with the second objective, all three are on the front, and the one between the ends is the most crowded
-  EXPECT_THAT(survivors(*make<Selection>("pareto-layers"), rows, 2), testing::UnorderedElementsAre(0, 2));
+  EXPECT_THAT(survivors(*make<Selection>("pareto-layers"), rows, 2), ::testing::UnorderedElementsAre(0, 2));
 }
 
 TEST(ParetoLayers, LosersFillFreePlacesBeforeTheFailed) {
   const auto selection = make<Selection>("pareto-layers");
   EXPECT_THAT(survivors(*selection, {champion, {}, {{50}, 3}, {{40}, 3, 2}, {{}, 0, 1}}, 3),
-              testing::UnorderedElementsAre(0, 2, 3));
+              ::testing::UnorderedElementsAre(0, 2, 3));
 }
 
 TEST(ParetoLayers, AFailedChildDoesNotReplace) {
   const auto selection = make<Selection>("pareto-layers");
-  EXPECT_THAT(survivors(*selection, {champion, {{-5}, 9}, {{}, 0, 1}}, 2), testing::UnorderedElementsAre(0, 1));
+  EXPECT_THAT(survivors(*selection, {champion, {{-5}, 9}, {{}, 0, 1}}, 2), ::testing::UnorderedElementsAre(0, 1));
   // a failed parent is removed
-  EXPECT_THAT(survivors(*selection, {champion, {{}, 1}, {{-5}, 9, 1}}, 2), testing::UnorderedElementsAre(0, 2));
+  EXPECT_THAT(survivors(*selection, {champion, {{}, 1}, {{-5}, 9, 1}}, 2), ::testing::UnorderedElementsAre(0, 2));
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

@@ -4,7 +4,7 @@
 #include "evodevo/helpers/selection/memory.hpp"
 #include "evolution.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 /// Individuals whose only gene is from 0 to 1.
@@ -96,9 +96,9 @@ TEST(Species, DoNotTakeOver) {
   const Table table = with_genes(rows);
   const auto living = table.survive(*make<Selection>("species"), 6).rows;
   // the worths of the first species are 20, 19/2, 18/3, 17/4, 16/5, ..., and those of the second 9 and 0
-  EXPECT_THAT(living, testing::ElementsAre(0, 1, 8, 2, 3, 4));
+  EXPECT_THAT(living, ::testing::ElementsAre(0, 1, 8, 2, 3, 4));
   EXPECT_THAT(table.survive(*make<Selection>("species", "threshold = 10"), 6).rows,
-              testing::ElementsAre(0, 1, 2, 3, 4, 5));
+              ::testing::ElementsAre(0, 1, 2, 3, 4, 5));
 }
 
 /// Those who survive are chosen one by one, each for the greatest share that is left.
@@ -157,15 +157,15 @@ TEST(Species, WithoutMemoryAllAreOne) {
     for (const auto& [parent, mate] : table.couples(*selection, 20000)) share[parent] += 1.0 / 20000;
     return share;
   };
-  using testing::DoubleNear;
+  using ::testing::DoubleNear;
   EXPECT_THAT(shares(with_genes({{0.1f, 3}, {0.9f, 2}, {0.5f, 1}})),
-              testing::ElementsAre(DoubleNear(3.0 / 6, 0.02), DoubleNear(2.0 / 6, 0.02), DoubleNear(1.0 / 6, 0.02)));
+              ::testing::ElementsAre(DoubleNear(3.0 / 6, 0.02), DoubleNear(2.0 / 6, 0.02), DoubleNear(1.0 / 6, 0.02)));
   EXPECT_THAT(shares(with_genes({{0.1f, 1}, {0.9f, -1}, {0.5f, -3}})),
-              testing::ElementsAre(DoubleNear(2.0 / 3, 0.02), DoubleNear(1.0 / 3, 0.02), 0))
+              ::testing::ElementsAre(DoubleNear(2.0 / 3, 0.02), DoubleNear(1.0 / 3, 0.02), 0))
       << "counted from the lowest score, if it is below 0";
   Table one_failed = with_genes({{0.1f, 3}, {0.9f, 1}, {0.5f, 2}});
   one_failed.rows[2].scores.clear();
-  EXPECT_THAT(shares(one_failed), testing::ElementsAre(DoubleNear(3.0 / 4, 0.02), DoubleNear(1.0 / 4, 0.02), 0));
+  EXPECT_THAT(shares(one_failed), ::testing::ElementsAre(DoubleNear(3.0 / 4, 0.02), DoubleNear(1.0 / 4, 0.02), 0));
 }
 
 TEST(Species, BecomeOneWhenTheyAreSimilar) {
@@ -195,10 +195,10 @@ TEST(Species, FailedRowsDieUnlessAllFailed) {
   const auto selection = make<Selection>("species");
   Table table = with_genes({{0.1f, 3}, {0.9f, 1}, {0.5f, 2}});
   table.rows[2].scores.clear();
-  EXPECT_THAT(table.survive(*selection, 3).rows, testing::UnorderedElementsAre(0, 1));
+  EXPECT_THAT(table.survive(*selection, 3).rows, ::testing::UnorderedElementsAre(0, 1));
   for (Individual& one : table.rows) one.scores.clear();
-  EXPECT_THAT(table.survive(*selection, 2).rows, testing::SizeIs(2));
-  EXPECT_THAT(table.couples(*selection, 7), testing::SizeIs(7));
+  EXPECT_THAT(table.survive(*selection, 2).rows, ::testing::SizeIs(2));
+  EXPECT_THAT(table.couples(*selection, 7), ::testing::SizeIs(7));
 }
 
 /// Two peaks of different height: species keep both, and a selection by scores alone loses the lower one.
@@ -225,4 +225,4 @@ TEST(Species, KeepSeveralPeaks) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

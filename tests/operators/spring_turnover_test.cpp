@@ -3,7 +3,7 @@
 
 #include "life.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 /// A life of 60 masses and 400 springs with stresses of 0 to 399 N in random order.
@@ -146,7 +146,7 @@ TEST(SpringTurnover, OnlyWhatCanBeReplacedGoes) {
   chain.add_spring(0, 1, bone, 2);
   chain.add_spring(1, 2, bone, 1);
   const Edits edits = develop(*devo, chain, 1);
-  EXPECT_THAT(edits.removed_springs, testing::ElementsAre(1));
+  EXPECT_THAT(edits.removed_springs, ::testing::ElementsAre(1));
   ASSERT_EQ(edits.new_springs.size(), 1u);
   EXPECT_EQ(ordered(edits.new_springs[0].a, edits.new_springs[0].b), Pair(0, 2));
 
@@ -256,4 +256,4 @@ TEST(SpringTurnover, DependsOnItsKeyAlone) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

@@ -1,7 +1,7 @@
 // The parameter that chooses the measure of stress, which several operators have.
 #include "life.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 /// A chain of five springs, which different measures put into different orders.
@@ -20,7 +20,7 @@ struct Judgement {
   std::uint32_t most, least;
 };
 
-class StressMeasure : public testing::TestWithParam<Judgement> {
+class StressMeasure : public ::testing::TestWithParam<Judgement> {
  protected:
   std::string by() const { return std::string("by = '") + GetParam().by + "'\n"; }
 
@@ -62,7 +62,7 @@ TEST_P(StressMeasure, IsTheCauseOfSpringsThatComeByIt) {
   for (std::size_t i = 0; i < drawn.new_springs.size(); ++i) {
     // the cause is one of the two springs between the chain's masses i, i + 1 and i + 2
     const std::uint32_t first = std::min(drawn.new_springs[i].a, drawn.new_springs[i].b);
-    EXPECT_THAT(drawn.causes.new_springs[i], testing::AnyOf(stress(chain())[first], stress(chain())[first + 1]));
+    EXPECT_THAT(drawn.causes.new_springs[i], ::testing::AnyOf(stress(chain())[first], stress(chain())[first + 1]));
   }
 }
 
@@ -120,11 +120,11 @@ TEST_P(StressMeasure, IsWhatTheyAskFor) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Operators, StressMeasure,
-                         testing::Values(Judgement{"mean-force", {.stress = true}, 0, 4},
-                                         Judgement{"peak", {.peak_force = true}, 1, 0},
-                                         Judgement{"work", {.muscle_work = true}, 2, 1},
-                                         Judgement{"tension", {.tension = true}, 3, 4},
-                                         Judgement{"compression", {.tension = true}, 4, 3}),
+                         ::testing::Values(Judgement{"mean-force", {.stress = true}, 0, 4},
+                                           Judgement{"peak", {.peak_force = true}, 1, 0},
+                                           Judgement{"work", {.muscle_work = true}, 2, 1},
+                                           Judgement{"tension", {.tension = true}, 3, 4},
+                                           Judgement{"compression", {.tension = true}, 4, 3}),
                          [](const auto& test) {
                            std::string name = test.param.by;
                            std::erase(name, '-');
@@ -132,4 +132,4 @@ INSTANTIATE_TEST_SUITE_P(Operators, StressMeasure,
                          });
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

@@ -8,7 +8,7 @@
 #include "evodevo/neat.hpp"
 #include "support.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 constexpr std::uint32_t node = 0, link = 1;
@@ -46,7 +46,7 @@ std::vector<float> newest(const Genome& genome, std::uint32_t type) {
 
 // blocks -------------------------------------------------------------------------------------------------------------
 
-class Structural : public testing::TestWithParam<const char*> {};
+class Structural : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(Structural, KeepsGenomesWithinTheirLayout) {
   const auto mutation = make<Mutation>(GetParam());
@@ -72,7 +72,7 @@ TEST_P(Structural, LeavesGenomesAloneWhoseBlocksAreFixed) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Mutations, Structural,
-                         testing::Values("add-block", "remove-block", "duplicate-block", "add-node", "add-link"));
+                         ::testing::Values("add-block", "remove-block", "duplicate-block", "add-node", "add-link"));
 
 TEST(AddBlock, AddsOneOfAnyTypeUpToTheLimits) {
   const auto mutation = make<Mutation>("add-block");
@@ -102,7 +102,7 @@ TEST(RemoveBlock, RemovesWhatRefersToItToo) {
     mutation->mutate(genome, network(), rng);
     sizes.insert(genome.blocks.size());
   }
-  EXPECT_THAT(sizes, testing::ElementsAre(2, 3, 4)) << "node 2 with both links, another node with its link, a link";
+  EXPECT_THAT(sizes, ::testing::ElementsAre(2, 3, 4)) << "node 2 with both links, another node with its link, a link";
 }
 
 TEST(RemoveBlock, LeavesAsManyAsTheLayoutAsksFor) {
@@ -439,4 +439,4 @@ TEST(Gaussian, EvolvesItsStepSizeOnASphere) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

@@ -5,7 +5,7 @@
 #include "base/genome_sections.hpp"
 #include "support.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 /// A layout of two real genes, a group of three genes with four options each, and two real genes of another range.
@@ -263,7 +263,7 @@ TEST(BlockRates, BlocksThatCameLaterHaveTheLeastRate) {
 
 // crossovers ---------------------------------------------------------------------------------------------------------
 
-class AnyCrossover : public testing::TestWithParam<const char*> {};
+class AnyCrossover : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(AnyCrossover, TwinsHaveTwins) {
   const auto crossover = make<Crossover>(GetParam());
@@ -314,7 +314,7 @@ TEST_P(AnyCrossover, DependsOnItsKeyAlone) {
   EXPECT_NE(one, child(2));
 }
 
-INSTANTIATE_TEST_SUITE_P(Crossovers, AnyCrossover, testing::Values("swap-neuron", "two-point"));
+INSTANTIATE_TEST_SUITE_P(Crossovers, AnyCrossover, ::testing::Values("swap-neuron", "two-point"));
 
 /// Returns how often each set of genes was exchanged.
 std::map<std::vector<std::size_t>, int> exchanges(const Crossover& crossover, const Layout& layout, int rounds) {
@@ -351,8 +351,8 @@ TEST(TwoPoint, WorksOnOneGene) {
   Layout layout;
   layout.add_block(1, {0, 1});
   const auto seen = exchanges(*make<Crossover>("two-point"), layout, 20);
-  EXPECT_THAT(seen, testing::ElementsAre(std::pair(std::vector<std::size_t>{0}, 20)));
+  EXPECT_THAT(seen, ::testing::ElementsAre(std::pair(std::vector<std::size_t>{0}, 20)));
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

@@ -9,10 +9,10 @@
 #include "scenes.hpp"
 #include "support.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
-using testing::Test;
+using ::testing::Test;
 
 constexpr Steps stepping{Method::paper_euler, Precision::float32, 0.0005};
 
@@ -56,12 +56,12 @@ class Batch : public Bodies, public Test {
   Batch() : Bodies(stepping) {}
 };
 
-class BatchOfEachMethod : public Bodies, public testing::TestWithParam<Method> {
+class BatchOfEachMethod : public Bodies, public ::testing::TestWithParam<Method> {
  protected:
   BatchOfEachMethod() : Bodies({GetParam(), Precision::float32, 0.0005}) {}
 };
 
-INSTANTIATE_TEST_SUITE_P(Methods, BatchOfEachMethod, testing::ValuesIn(all_methods),
+INSTANTIATE_TEST_SUITE_P(Methods, BatchOfEachMethod, ::testing::ValuesIn(all_methods),
                          [](const auto& instance) { return name_of(instance.param); });
 
 TEST_P(BatchOfEachMethod, AnyNumberOfThreadsGivesTheSameBits) {
@@ -181,4 +181,4 @@ TEST(Guard, AnUnconnectedMassIsWatchedToo) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

@@ -9,12 +9,12 @@
 #include "analysis/ground.hpp"
 #include "support.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 constexpr double g = 9.81;
 
-class ClosedForm : public testing::TestWithParam<Arithmetic> {
+class ClosedForm : public ::testing::TestWithParam<Arithmetic> {
  protected:
   static Method method() { return std::get<Method>(GetParam()); }
   static Precision precision() { return std::get<Precision>(GetParam()); }
@@ -23,8 +23,8 @@ class ClosedForm : public testing::TestWithParam<Arithmetic> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Methods, ClosedForm,
-                         testing::Combine(testing::ValuesIn(all_methods),
-                                          testing::Values(Precision::float32, Precision::float64)),
+                         ::testing::Combine(::testing::ValuesIn(all_methods),
+                                            ::testing::Values(Precision::float32, Precision::float64)),
                          [](const auto& instance) { return name_of(instance.param); });
 
 Scene gravity_only() { return {Gravity{}, {}, {}, {}, {}}; }
@@ -288,8 +288,8 @@ TEST_P(ClosedForm, FrictionNeedsAFloor) {
 class LossFreeClosedForm : public ClosedForm {};
 
 INSTANTIATE_TEST_SUITE_P(Methods, LossFreeClosedForm,
-                         testing::Combine(testing::ValuesIn(explicit_methods),
-                                          testing::Values(Precision::float32, Precision::float64)),
+                         ::testing::Combine(::testing::ValuesIn(explicit_methods),
+                                            ::testing::Values(Precision::float32, Precision::float64)),
                          [](const auto& instance) { return name_of(instance.param); });
 
 TEST_P(LossFreeClosedForm, ABounceComesBackAsHigh) {
@@ -302,4 +302,4 @@ TEST_P(LossFreeClosedForm, ABounceComesBackAsHigh) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

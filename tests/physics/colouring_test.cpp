@@ -8,7 +8,7 @@
 
 #include "support.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 TEST(Colouring, NoTwoSpringsOfAColourShareAMass) {
@@ -29,4 +29,4 @@ TEST(Colouring, NoTwoSpringsOfAColourShareAMass) {
 TEST(Colouring, NothingHasNoColours) { EXPECT_TRUE(spring_colours({}).empty()); }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

@@ -7,7 +7,7 @@
 
 #include "support.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 /// Random materials, some of them muscles.
@@ -93,11 +93,11 @@ TEST(ComputedMaterials, WhatNoSpringHasDecidesNothing) {
   EXPECT_EQ(simulated_materials(with_more, Materials::computed)[1], with_more.materials[1]);
 }
 
-class ComputedMaterialsOnTheCpu : public testing::TestWithParam<Arithmetic> {};
+class ComputedMaterialsOnTheCpu : public ::testing::TestWithParam<Arithmetic> {};
 
 INSTANTIATE_TEST_SUITE_P(Methods, ComputedMaterialsOnTheCpu,
-                         testing::Combine(testing::ValuesIn(all_methods),
-                                          testing::Values(Precision::float32, Precision::float64)),
+                         ::testing::Combine(::testing::ValuesIn(all_methods),
+                                            ::testing::Values(Precision::float32, Precision::float64)),
                          [](const auto& instance) { return name_of(instance.param); });
 
 TEST_P(ComputedMaterialsOnTheCpu, AreThoseOfTheCodes) {
@@ -121,4 +121,4 @@ TEST_P(ComputedMaterialsOnTheCpu, AreThoseOfTheCodes) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

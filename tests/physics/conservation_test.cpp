@@ -9,10 +9,10 @@
 #include "momentum.hpp"
 #include "support.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
-class Conservation : public testing::TestWithParam<Arithmetic> {
+class Conservation : public ::testing::TestWithParam<Arithmetic> {
  protected:
   static Method method() { return std::get<Method>(GetParam()); }
   static Precision precision() { return std::get<Precision>(GetParam()); }
@@ -20,8 +20,8 @@ class Conservation : public testing::TestWithParam<Arithmetic> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Methods, Conservation,
-                         testing::Combine(testing::ValuesIn(all_methods),
-                                          testing::Values(Precision::float32, Precision::float64)),
+                         ::testing::Combine(::testing::ValuesIn(all_methods),
+                                            ::testing::Values(Precision::float32, Precision::float64)),
                          [](const auto& instance) { return name_of(instance.param); });
 
 TEST_P(Conservation, InternalForcesKeepLinearAndAngularMomentum) {
@@ -51,8 +51,8 @@ TEST_P(Conservation, InternalForcesKeepLinearAndAngularMomentum) {
 class EnergyConservation : public Conservation {};
 
 INSTANTIATE_TEST_SUITE_P(Methods, EnergyConservation,
-                         testing::Combine(testing::ValuesIn(explicit_methods),
-                                          testing::Values(Precision::float32, Precision::float64)),
+                         ::testing::Combine(::testing::ValuesIn(explicit_methods),
+                                            ::testing::Values(Precision::float32, Precision::float64)),
                          [](const auto& instance) { return name_of(instance.param); });
 
 TEST_P(EnergyConservation, TheEnergyOfAnUndampedBodyStaysInBounds) {
@@ -89,4 +89,4 @@ TEST_P(Conservation, AFlatBodyOnTheFloorIsNeverFlagged) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

@@ -8,7 +8,7 @@
 #include "reference.hpp"
 #include "support.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 struct Smooth {
@@ -58,9 +58,9 @@ int order_of(Method method) {
   }
 }
 
-class Convergence : public testing::TestWithParam<Method> {};
+class Convergence : public ::testing::TestWithParam<Method> {};
 
-INSTANTIATE_TEST_SUITE_P(Methods, Convergence, testing::ValuesIn(all_methods),
+INSTANTIATE_TEST_SUITE_P(Methods, Convergence, ::testing::ValuesIn(all_methods),
                          [](const auto& instance) { return name_of(instance.param); });
 
 TEST_P(Convergence, TheErrorFallsWithTheOrderOfTheMethod) {
@@ -131,4 +131,4 @@ TEST_P(Convergence, TheTerminalVelocityIsTrue) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

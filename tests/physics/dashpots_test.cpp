@@ -9,10 +9,10 @@
 #include "momentum.hpp"
 #include "support.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
-class Dashpots : public testing::TestWithParam<Arithmetic> {
+class Dashpots : public ::testing::TestWithParam<Arithmetic> {
  protected:
   Method method() const { return std::get<Method>(GetParam()); }
   Precision precision() const { return std::get<Precision>(GetParam()); }
@@ -30,8 +30,8 @@ class Dashpots : public testing::TestWithParam<Arithmetic> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Methods, Dashpots,
-                         testing::Combine(testing::ValuesIn(all_methods),
-                                          testing::Values(Precision::float32, Precision::float64)),
+                         ::testing::Combine(::testing::ValuesIn(all_methods),
+                                            ::testing::Values(Precision::float32, Precision::float64)),
                          [](const auto& instance) { return name_of(instance.param); });
 
 Body damped_body(double ratio) {
@@ -157,4 +157,4 @@ TEST_P(Dashpots, ABodyBearsItsLargestStep) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

@@ -7,7 +7,7 @@
 #include "evodevo/lattice.hpp"
 #include "support.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 /// Simulates `body` with every method in two scenes and both precisions, with everything recorded. Expects that all
@@ -103,4 +103,4 @@ TEST(Lattice, TenVoxelsASideAreThePapersBody) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

@@ -10,7 +10,7 @@
 #include "analysis/stability.hpp"
 #include "support.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 std::vector<Vec3> rest_positions(const Body& body) {
@@ -36,9 +36,9 @@ Body passive_body() {
   return body;
 }
 
-class Energy : public testing::TestWithParam<Method> {};
+class Energy : public ::testing::TestWithParam<Method> {};
 
-INSTANTIATE_TEST_SUITE_P(Methods, Energy, testing::ValuesIn(all_methods),
+INSTANTIATE_TEST_SUITE_P(Methods, Energy, ::testing::ValuesIn(all_methods),
                          [](const auto& instance) { return name_of(instance.param); });
 
 /// The factor by which a step of h = omega dt changes the energy of an oscillating spring, on average over its period.
@@ -94,9 +94,9 @@ TEST_P(Energy, NeverRisesWithoutMuscles) {
     }
 }
 
-class LimitedEnergy : public testing::TestWithParam<Method> {};
+class LimitedEnergy : public ::testing::TestWithParam<Method> {};
 
-INSTANTIATE_TEST_SUITE_P(Methods, LimitedEnergy, testing::ValuesIn(explicit_methods),
+INSTANTIATE_TEST_SUITE_P(Methods, LimitedEnergy, ::testing::ValuesIn(explicit_methods),
                          [](const auto& instance) { return name_of(instance.param); });
 
 TEST_P(LimitedEnergy, IsBoundedBelowTheLimitOfTheStepAndNotAbove) {
@@ -112,9 +112,9 @@ TEST_P(LimitedEnergy, IsBoundedBelowTheLimitOfTheStepAndNotAbove) {
   }
 }
 
-class UnlimitedStep : public testing::TestWithParam<Method> {};
+class UnlimitedStep : public ::testing::TestWithParam<Method> {};
 
-INSTANTIATE_TEST_SUITE_P(Methods, UnlimitedStep, testing::Values(Method::implicit, Method::xpbd),
+INSTANTIATE_TEST_SUITE_P(Methods, UnlimitedStep, ::testing::Values(Method::implicit, Method::xpbd),
                          [](const auto& instance) { return name_of(instance.param); });
 
 TEST_P(UnlimitedStep, CarriesAWalkerWhereExplicitMethodsFail) {
@@ -135,4 +135,4 @@ TEST_P(UnlimitedStep, CarriesAWalkerWhereExplicitMethodsFail) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

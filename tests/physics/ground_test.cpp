@@ -10,7 +10,7 @@
 #include "physics/physics.hpp"
 #include "support.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 constexpr double g = 9.81;
@@ -111,7 +111,7 @@ TEST(Ground, SidewaysPushesShortenTheStepThatContactBears) {
                    largest_contact_dt(flat, 0.2, Method::rk4) / std::sqrt(1 + 0.75 * 0.75));
 }
 
-class OnRoughGround : public testing::TestWithParam<Arithmetic> {
+class OnRoughGround : public ::testing::TestWithParam<Arithmetic> {
  protected:
   static Method method() { return std::get<Method>(GetParam()); }
   static Precision precision() { return std::get<Precision>(GetParam()); }
@@ -129,8 +129,8 @@ class OnRoughGround : public testing::TestWithParam<Arithmetic> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Methods, OnRoughGround,
-                         testing::Combine(testing::ValuesIn(all_methods),
-                                          testing::Values(Precision::float32, Precision::float64)),
+                         ::testing::Combine(::testing::ValuesIn(all_methods),
+                                            ::testing::Values(Precision::float32, Precision::float64)),
                          [](const auto& instance) { return name_of(instance.param); });
 
 TEST_P(OnRoughGround, AMassRestsInAHollow) {
@@ -260,4 +260,4 @@ TEST(ImplicitOnRoughGround, BearsStepsBeyondTheExplicitMethods) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

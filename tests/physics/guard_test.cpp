@@ -4,10 +4,10 @@
 #include "guard_cases.hpp"
 #include "physics/energy_bound.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
-class GuardOfEachMethod : public testing::TestWithParam<Arithmetic> {
+class GuardOfEachMethod : public ::testing::TestWithParam<Arithmetic> {
  protected:
   static Method method() { return std::get<Method>(GetParam()); }
   static SimulatorFactory factory() {
@@ -16,8 +16,8 @@ class GuardOfEachMethod : public testing::TestWithParam<Arithmetic> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Ways, GuardOfEachMethod,
-                         testing::Combine(testing::ValuesIn(all_methods),
-                                          testing::Values(Precision::float32, Precision::float64)),
+                         ::testing::Combine(::testing::ValuesIn(all_methods),
+                                            ::testing::Values(Precision::float32, Precision::float64)),
                          [](const auto& instance) { return name_of(instance.param); });
 
 TEST_P(GuardOfEachMethod, LetsResonanceLive) { expect_resonance_to_live(factory(), method()); }
@@ -40,4 +40,4 @@ TEST_P(GuardOfEachMethod, EndsWhatTheFloorPumpsUp) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

@@ -4,14 +4,14 @@
 
 #include <gtest/gtest.h>
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
-class HardCases : public testing::TestWithParam<Arithmetic> {};
+class HardCases : public ::testing::TestWithParam<Arithmetic> {};
 
 INSTANTIATE_TEST_SUITE_P(Methods, HardCases,
-                         testing::Combine(testing::ValuesIn(all_methods),
-                                          testing::Values(Precision::float32, Precision::float64)),
+                         ::testing::Combine(::testing::ValuesIn(all_methods),
+                                            ::testing::Values(Precision::float32, Precision::float64)),
                          [](const auto& instance) { return name_of(instance.param); });
 
 TEST_P(HardCases, AreRightOrFlagged) {
@@ -22,4 +22,4 @@ TEST_P(HardCases, AreRightOrFlagged) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

@@ -10,7 +10,7 @@
 
 #include "evodevo/lattice.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 using Pairs = std::vector<IndexPair>;
@@ -99,4 +99,4 @@ TEST(Neighbours, PassesOnWhatTheCallerThrows) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

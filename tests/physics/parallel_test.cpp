@@ -16,7 +16,7 @@
 
 #include "threads/busy_clock.hpp"
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 TEST(Workers, CallEveryItemOnce) {
@@ -166,4 +166,4 @@ TEST(BusyClock, CountsOverlappingSpansOnce) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

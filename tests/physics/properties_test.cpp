@@ -8,7 +8,7 @@
 #include "momentum.hpp"
 #include "random_lives.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 constexpr std::uint64_t scenes = 32;
@@ -26,7 +26,7 @@ void for_random_scenes(const F& check) {
 
 std::string trace(const Life& life) { return "the life of seed " + std::to_string(life.seed); }
 
-class Property : public testing::TestWithParam<Arithmetic> {
+class Property : public ::testing::TestWithParam<Arithmetic> {
  protected:
   static Method method() { return std::get<Method>(GetParam()); }
   static Precision precision() { return std::get<Precision>(GetParam()); }
@@ -36,8 +36,8 @@ class Property : public testing::TestWithParam<Arithmetic> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Methods, Property,
-                         testing::Combine(testing::ValuesIn(all_methods),
-                                          testing::Values(Precision::float32, Precision::float64)),
+                         ::testing::Combine(::testing::ValuesIn(all_methods),
+                                            ::testing::Values(Precision::float32, Precision::float64)),
                          [](const auto& instance) { return name_of(instance.param); });
 
 TEST_P(Property, AStepThatABodyBearsIsNeverFlaggedAndGivesNumbers) {
@@ -104,14 +104,14 @@ TEST_P(Property, NoPlaceIsSpecial) {
 }
 
 /// Properties that need double precision, since their tolerances are tight.
-class ExactProperty : public testing::TestWithParam<Method> {
+class ExactProperty : public ::testing::TestWithParam<Method> {
  protected:
   static std::unique_ptr<Simulator> simulator(const Scene& scene) {
     return make_cpu_simulator(scene, {GetParam(), Precision::float64}, 1);
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Methods, ExactProperty, testing::ValuesIn(all_methods),
+INSTANTIATE_TEST_SUITE_P(Methods, ExactProperty, ::testing::ValuesIn(all_methods),
                          [](const auto& instance) { return name_of(instance.param); });
 
 double total_mass(const Body& body) {
@@ -161,7 +161,7 @@ TEST_P(ExactProperty, MomentumIsWhatGravityAndDampingLeave) {
 /// step, not at its end.
 class ExplicitProperty : public ExactProperty {};
 
-INSTANTIATE_TEST_SUITE_P(Methods, ExplicitProperty, testing::ValuesIn(explicit_methods),
+INSTANTIATE_TEST_SUITE_P(Methods, ExplicitProperty, ::testing::ValuesIn(explicit_methods),
                          [](const auto& instance) { return name_of(instance.param); });
 
 TEST_P(ExplicitProperty, AngularMomentumIsKept) {
@@ -288,4 +288,4 @@ TEST_P(ExactProperty, EnergyIsWhatMusclesAndLossesAccountFor) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

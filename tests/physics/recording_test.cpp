@@ -6,18 +6,18 @@
 #include "analysis/ground.hpp"
 #include "support.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
-class Recorded : public testing::TestWithParam<Arithmetic> {
+class Recorded : public ::testing::TestWithParam<Arithmetic> {
  protected:
   static Precision precision() { return std::get<Precision>(GetParam()); }
   static Steps stepping() { return {std::get<Method>(GetParam()), precision(), 0.0005}; }
 };
 
 INSTANTIATE_TEST_SUITE_P(Methods, Recorded,
-                         testing::Combine(testing::ValuesIn(all_methods),
-                                          testing::Values(Precision::float32, Precision::float64)),
+                         ::testing::Combine(::testing::ValuesIn(all_methods),
+                                            ::testing::Values(Precision::float32, Precision::float64)),
                          [](const auto& instance) { return name_of(instance.param); });
 
 TEST_P(Recorded, AStaticallyLoadedSpringIsUnderItsLoad) {
@@ -139,4 +139,4 @@ TEST_P(Recorded, OnlyWhatIsAskedForIsAnswered) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

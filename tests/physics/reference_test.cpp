@@ -10,7 +10,7 @@
 #include "analysis/ground.hpp"
 #include "support.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 /// Limits simulators that are created during its lifetime to one instruction set.
@@ -35,18 +35,18 @@ bool is_there(const Set& set) { return set.target == HWY_SCALAR || (hwy::Support
 
 using Case = std::tuple<Set, Precision, std::uint32_t>;  // the integer is the number of materials
 
-std::string name_of_case(const testing::TestParamInfo<Case>& info) {
+std::string name_of_case(const ::testing::TestParamInfo<Case>& info) {
   const auto& [set, precision, materials] = info.param;
   return std::string(set.name) + "_" + name_of(precision) + "_" + std::to_string(materials);
 }
 
-class AgainstReference : public testing::TestWithParam<Case> {};
+class AgainstReference : public ::testing::TestWithParam<Case> {};
 
 // sixteen materials fit into registers, forty do not
 INSTANTIATE_TEST_SUITE_P(Sets, AgainstReference,
-                         testing::Combine(testing::Values(avx512, avx2, sse4, scalar),
-                                          testing::Values(Precision::float32, Precision::float64),
-                                          testing::Values(16u, 40u)),
+                         ::testing::Combine(::testing::Values(avx512, avx2, sse4, scalar),
+                                            ::testing::Values(Precision::float32, Precision::float64),
+                                            ::testing::Values(16u, 40u)),
                          name_of_case);
 
 /// Returns a state in which `body` is at its position at birth, rotates and moves downwards.
@@ -86,7 +86,7 @@ TEST_P(AgainstReference, RandomBodiesInAllForcesAgreeToRounding) {
   }
 }
 
-class InstructionSets : public testing::TestWithParam<Arithmetic> {
+class InstructionSets : public ::testing::TestWithParam<Arithmetic> {
  protected:
   /// Simulates a body in a scene with all forces, with one instruction set.
   static Answer simulated_with(const Set& set, std::uint64_t steps) {
@@ -99,17 +99,17 @@ class InstructionSets : public testing::TestWithParam<Arithmetic> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Methods, InstructionSets,
-                         testing::Combine(testing::ValuesIn(all_methods),
-                                          testing::Values(Precision::float32, Precision::float64)),
+                         ::testing::Combine(::testing::ValuesIn(all_methods),
+                                            ::testing::Values(Precision::float32, Precision::float64)),
                          [](const auto& instance) { return name_of(instance.param); });
 
 /// Tests of all methods except implicit, whose scalar products depend on the width of vectors.
 class ExactInstructionSets : public InstructionSets {};
 
 INSTANTIATE_TEST_SUITE_P(Methods, ExactInstructionSets,
-                         testing::Combine(testing::Values(Method::paper_euler, Method::symplectic_euler,
-                                                          Method::velocity_verlet, Method::rk4, Method::xpbd),
-                                          testing::Values(Precision::float32, Precision::float64)),
+                         ::testing::Combine(::testing::Values(Method::paper_euler, Method::symplectic_euler,
+                                                              Method::velocity_verlet, Method::rk4, Method::xpbd),
+                                            ::testing::Values(Precision::float32, Precision::float64)),
                          [](const auto& instance) { return name_of(instance.param); });
 
 TEST_P(ExactInstructionSets, ThatFuseMultiplyAndAddAgreeToTheBit) {
@@ -137,4 +137,4 @@ TEST_P(InstructionSets, AllAgreeToRounding) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

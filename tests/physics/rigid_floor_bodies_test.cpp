@@ -11,14 +11,14 @@
 #include "analysis/stability.hpp"
 #include "support.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 constexpr double g = 9.81;
 
 Floor rigid(double restitution) { return {.restitution = restitution}; }
 
-class BodiesOnARigidFloor : public testing::TestWithParam<Arithmetic> {
+class BodiesOnARigidFloor : public ::testing::TestWithParam<Arithmetic> {
  protected:
   static Method method() { return std::get<Method>(GetParam()); }
   static Precision precision() { return std::get<Precision>(GetParam()); }
@@ -27,8 +27,8 @@ class BodiesOnARigidFloor : public testing::TestWithParam<Arithmetic> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Methods, BodiesOnARigidFloor,
-                         testing::Combine(testing::ValuesIn(all_methods),
-                                          testing::Values(Precision::float32, Precision::float64)),
+                         ::testing::Combine(::testing::ValuesIn(all_methods),
+                                            ::testing::Values(Precision::float32, Precision::float64)),
                          [](const auto& instance) { return name_of(instance.param); });
 
 /// The ways in which a body on springs settles: by uniform damping, or by dashpots.
@@ -205,4 +205,4 @@ TEST(ImplicitOnARigidFloor, CarriesBodiesAtLongSteps) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

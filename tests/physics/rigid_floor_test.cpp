@@ -9,7 +9,7 @@
 #include "analysis/stability.hpp"
 #include "support.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 constexpr double g = 9.81;
@@ -32,7 +32,7 @@ State moving(const Body& body, const Scene& scene, Vec3 velocity) {
   return state;
 }
 
-class RigidFloor : public testing::TestWithParam<Arithmetic> {
+class RigidFloor : public ::testing::TestWithParam<Arithmetic> {
  protected:
   static Method method() { return std::get<Method>(GetParam()); }
   static Precision precision() { return std::get<Precision>(GetParam()); }
@@ -51,8 +51,8 @@ class RigidFloor : public testing::TestWithParam<Arithmetic> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Methods, RigidFloor,
-                         testing::Combine(testing::ValuesIn(all_methods),
-                                          testing::Values(Precision::float32, Precision::float64)),
+                         ::testing::Combine(::testing::ValuesIn(all_methods),
+                                            ::testing::Values(Precision::float32, Precision::float64)),
                          [](const auto& instance) { return name_of(instance.param); });
 
 TEST_P(RigidFloor, ADroppedMassRisesByTheSquareOfTheRestitution) {
@@ -245,4 +245,4 @@ TEST(RigidFloorOfAScene, LimitsNoStep) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
-class Samples : public testing::TestWithParam<Arithmetic> {
+class Samples : public ::testing::TestWithParam<Arithmetic> {
  protected:
   static Method method() { return std::get<Method>(GetParam()); }
   static SimulatorFactory factory() {
@@ -15,8 +15,8 @@ class Samples : public testing::TestWithParam<Arithmetic> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Ways, Samples,
-                         testing::Combine(testing::ValuesIn(all_methods),
-                                          testing::Values(Precision::float32, Precision::float64)),
+                         ::testing::Combine(::testing::ValuesIn(all_methods),
+                                            ::testing::Values(Precision::float32, Precision::float64)),
                          [](const auto& instance) { return name_of(instance.param); });
 
 TEST_P(Samples, ChangeNothing) {
@@ -40,4 +40,4 @@ TEST_P(Samples, CountContactFromTheLandingOn) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

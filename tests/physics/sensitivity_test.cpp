@@ -6,7 +6,7 @@
 #include "analysis/ground.hpp"
 #include "random_lives.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 constexpr double moved = 1e-9, speed = 1.7, dt = 0.00013;
@@ -42,4 +42,4 @@ TEST(Sensitivity, OfALandingIsThatOfOneStep) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

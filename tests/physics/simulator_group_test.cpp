@@ -10,7 +10,7 @@
 #include <numeric>
 #include <optional>
 
-namespace evodevo {
+namespace evodevo::EVODEVO_FILE {
 namespace {
 
 TEST(Backlog, GivesWorkToTheMemberWithTheLeast) {
@@ -87,4 +87,4 @@ TEST(SimulatorGroup, SimulatesBatchesAtTheSameTime) {
 }
 
 }  // namespace
-}  // namespace evodevo
+}  // namespace evodevo::EVODEVO_FILE

@@ -13,7 +13,7 @@
 #include "stiffness_matrix.hpp"
 #include "support.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 /// The highest angular frequency of a body at its rest positions, from the eigenvalues of a dense matrix, 1/s.
@@ -209,4 +209,4 @@ TEST(Stability, ScenesAndMaterialsHaveTheirOwnLimits) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

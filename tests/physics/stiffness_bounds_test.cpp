@@ -11,7 +11,7 @@
 #include "stiffness_matrix.hpp"
 #include "support.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 /// Returns twice the largest eigenvalue of the diagonal block of any mass.
@@ -74,4 +74,4 @@ TEST(StiffnessBounds, NothingIsABoundWherePlacesAreNotNumbers) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

@@ -12,7 +12,7 @@
 #include "analysis/stability.hpp"
 #include "support.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 /// A random body with muscles; every spring has a factor from 0.5 to 1.5, some of them equal, and some 1.
@@ -134,7 +134,7 @@ TEST(StiffnessFactors, CountInEnergyAndTimeStep) {
     EXPECT_DOUBLE_EQ(largest_dt(body, state.position, method, 1), largest_dt(other, state.position, method, 1));
 }
 
-class StiffnessFactorsInMotion : public testing::TestWithParam<Arithmetic> {
+class StiffnessFactorsInMotion : public ::testing::TestWithParam<Arithmetic> {
  protected:
   static Answer moved(const Body& body, Materials materials) {
     const auto [method, precision] = GetParam();
@@ -149,8 +149,8 @@ class StiffnessFactorsInMotion : public testing::TestWithParam<Arithmetic> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Methods, StiffnessFactorsInMotion,
-                         testing::Combine(testing::ValuesIn(all_methods),
-                                          testing::Values(Precision::float32, Precision::float64)),
+                         ::testing::Combine(::testing::ValuesIn(all_methods),
+                                            ::testing::Values(Precision::float32, Precision::float64)),
                          [](const auto& instance) { return name_of(instance.param); });
 
 TEST_P(StiffnessFactorsInMotion, AreLikeMaterialsWithThisStiffness) {
@@ -166,4 +166,4 @@ TEST_P(StiffnessFactorsInMotion, AreLikeMaterialsWithThisStiffness) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

@@ -1,6 +1,6 @@
 // A lattice of voxels with springs of their own as an elastic material: the modulus, the bending stiffness and the mass
-// that its springs and masses stand for. experiments/published uses this to map voxels of a given modulus and density to
-// springs and masses.
+// that its springs and masses stand for. experiments/published uses this to map voxels of a given modulus and density
+// to springs and masses.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "evodevo/lattice.hpp"
 #include "support.hpp"
 
-namespace evodevo::test {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 // those of experiments/published/kriegman-2018
@@ -105,8 +105,8 @@ double first_frequency(std::uint32_t levels, double root, double expected) {
 }
 
 TEST(VoxelLattice, ABeamSwingsAsEulerAndBernoulliSay) {
-  // EI = 4/3 k h^3: four edges at the distance h/2 from the middle, and the diagonals of the top and the bottom, as far as
-  // the springs across hold them
+  // EI = 4/3 k h^3: four edges at the distance h/2 from the middle, and the diagonals of the top and the bottom, as far
+  // as the springs across hold them
   constexpr std::uint32_t levels = 20;
   const double root = 1.8751040687119611, bending = 4.0 / 3 * stiffness * std::pow(edge, 3);  // 1, N m^2
   const double theory = root * root / (2 * pi) * std::sqrt(bending / (mass / edge * std::pow(levels * edge, 4)));
@@ -125,4 +125,4 @@ TEST(VoxelLattice, ABodyFallsAsGravityAndGroundDampingSay) {
 }
 
 }  // namespace
-}  // namespace evodevo::test
+}  // namespace evodevo::test::EVODEVO_FILE

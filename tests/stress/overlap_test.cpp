@@ -9,7 +9,7 @@
 #include <fstream>
 #include <numeric>
 
-namespace evodevo::tools::stress {
+namespace evodevo::tools::stress::EVODEVO_FILE {
 namespace {
 
 std::vector<double> rising(std::size_t springs, double from = 0) {
@@ -125,4 +125,4 @@ name = "elitist"
 }
 
 }  // namespace
-}  // namespace evodevo::tools::stress
+}  // namespace evodevo::tools::stress::EVODEVO_FILE

@@ -6,10 +6,10 @@
 
 #include "../common/help.hpp"
 
-namespace evodevo::tools::stress {
+namespace evodevo::tools::stress::EVODEVO_FILE {
 namespace {
 
-using testing::ElementsAre;
+using ::testing::ElementsAre;
 
 TEST(StressSettings, NameTheCommandThatRepeatsThem) {
   const Settings settings = parse({"charts", "a.toml", "b.toml", "--quick", "--device", "cpu"});
@@ -37,4 +37,4 @@ TEST(StressSettings, AreDescribedByTheHelp) {
 }
 
 }  // namespace
-}  // namespace evodevo::tools::stress
+}  // namespace evodevo::tools::stress::EVODEVO_FILE

@@ -311,7 +311,7 @@ bool is_to_go_on(const Given& given, std::size_t islands) {
   return has_islands(folder) ? !is_half_created(folder, static_cast<std::int64_t>(islands)) : is_begun(folder);
 }
 
-int make_run(const Ranks& ranks, const Given& given) {
+int make_run_of(const Ranks& ranks, const Given& given) {
   const auto file = given["EXPERIMENT.toml"].as<std::string>();
   const std::unique_ptr<TimeLimit> limit = given_limit(given);
   std::vector<Experiment> islands = given_islands(file, given);
@@ -323,7 +323,7 @@ int make_run(const Ranks& ranks, const Given& given) {
 int run(const Given& given) {
   end_on_signals();
   const Ranks ranks = Ranks::joined();
-  return served(ranks, given) ? 0 : make_run(ranks, given);
+  return served(ranks, given) ? 0 : make_run_of(ranks, given);
 }
 
 int resume(const Given& given) {
@@ -335,7 +335,7 @@ int resume(const Given& given) {
 
 }  // namespace
 
-int make_run(const Given& given) { return make_run(Ranks::alone(), given); }
+int make_run(const Given& given) { return make_run_of(Ranks::alone(), given); }
 
 Command run_command() {
   Options options;
