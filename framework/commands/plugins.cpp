@@ -8,7 +8,6 @@
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <regex>
 #include <sstream>
 
 #include "base/json_text.hpp"
@@ -48,10 +47,22 @@ void check_kind(const std::string& kind) {
     throw UsageError("new " + printable(kind) + ": is not a kind of operator" + suggestion(kind, kinds));
 }
 
+bool is_letter(char c) { return c >= 'a' && c <= 'z'; }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// Returns whether a name consists of words that begin with a letter, joined by - or "."
+bool is_operator_name(std::string_view name) {
+  bool begins = true;  // a word must begin here
+  for (const char c : name) {
+    if (!is_letter(c) && (begins || !(is_digit(c) || c == '-' || c == '.'))) return false;
+    begins = c == '-' || c == '.';
+  }
+  return !begins;
+}
+
 void check_name(const std::string& name) {
-  static const std::regex allowed("[a-z][a-z0-9]*([-.][a-z][a-z0-9]*)*");
-  constexpr std::size_t longest = 100;  // bytes; std::regex_match recurses once for each byte
-  if (name.size() > longest || !std::regex_match(name, allowed))
+  constexpr std::size_t longest = 100;  // bytes
+  if (name.size() > longest || !is_operator_name(name))
     throw UsageError(
         "new " + printable(name) +
         ": is not a valid operator name; expected at most 100 lowercase letters and digits, in words joined by - or "
@@ -161,6 +172,11 @@ std::string filled(const std::string& section, std::string text, const std::vect
   return all;
 }
 
+bool begins_section(const std::string& line) {
+  return line.size() > 2 && line.starts_with('@') && line.ends_with('@') &&
+         std::all_of(line.begin() + 1, line.end() - 1, [](char c) { return is_letter(c) || c == ' '; });
+}
+
 /// Returns the text of a template for the operators of a project. A line such as "@devo@" begins a section, which ends
 /// at the next line of this form:
 ///   @KIND@, @each@         repeated for each operator of the kind, or of any kind
@@ -169,13 +185,11 @@ std::string filled(const std::string& section, std::string text, const std::vect
 ///   @end@                  always
 /// Within a section, marks such as @NAME@ stand for the operator for which it is repeated, or for the first one.
 std::string from_template(std::istream& source, const std::vector<NewOperator>& operators) {
-  static const std::regex begin("@([a-z]+( [a-z]+)?)@");
   std::string section = "end", text, lines;
-  std::smatch match;
   for (std::string line; std::getline(source, line);)
-    if (std::regex_match(line, match, begin)) {
+    if (begins_section(line)) {
       text += filled(section, lines, operators);
-      section = match[1];
+      section = line.substr(1, line.size() - 2);
       lines.clear();
     } else {
       lines += line + "\n";

@@ -6,8 +6,8 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
-#include <regex>
 #include <stdexcept>
+#include <string_view>
 
 namespace evodevo::conformance {
 namespace {
@@ -47,9 +47,18 @@ bool is_export(const Elf64_Sym& symbol) {
 
 /// Returns whether a mangled name (Itanium C++ ABI, 5.1) belongs to an instance of a template of the standard library.
 /// Such symbols are exported regardless of the visibility that the compiler was told to use.
-bool is_of_standard_library(const std::string& name) {
-  static const std::regex mangled("_Z(GV|T[A-Z])?Z?N?[VK]*(S[abdiost]|9__gnu_cxx).*");
-  return std::regex_match(name, mangled);
+bool is_of_standard_library(std::string_view name) {
+  const auto skip = [&name](std::string_view prefix) {
+    const bool found = name.starts_with(prefix);
+    if (found) name.remove_prefix(prefix.size());
+    return found;
+  };
+  if (!skip("_Z")) return false;
+  if (!skip("GV") && name.size() > 1 && name[0] == 'T' && name[1] >= 'A' && name[1] <= 'Z') name.remove_prefix(2);
+  skip("Z");
+  skip("N");
+  while (skip("V") || skip("K")) continue;
+  return skip("9__gnu_cxx") || (skip("S") && name.find_first_of("abdiost") == 0);
 }
 
 }  // namespace

@@ -1,21 +1,14 @@
 // The kernels of the CPU, compiled once for each instruction set; the best instruction set is chosen at run time.
-#include "cpu/step.hpp"
+#include "cpu/instruction_sets.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "cpu/step.cpp"
-// disables instruction sets that are rare, or no faster for this code than the next lower one
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
 #include "cpu/actuation-inl.hpp"
 #include "cpu/energies-inl.hpp"
-#include "cpu/methods/implicit-inl.hpp"
-#include "cpu/methods/paper_euler-inl.hpp"
-#include "cpu/methods/rk4-inl.hpp"
-#include "cpu/methods/symplectic_euler-inl.hpp"
-#include "cpu/methods/velocity_verlet-inl.hpp"
-#include "cpu/methods/xpbd-inl.hpp"
+#include "cpu/step.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {
@@ -31,6 +24,20 @@ const char* instruction_set() {
   }
 }
 
+// defined in cpu/methods/
+template <class T>
+cpu::Integrator<T> paper_euler();
+template <class T>
+cpu::Integrator<T> symplectic_euler();
+template <class T>
+cpu::Integrator<T> velocity_verlet();
+template <class T>
+cpu::Integrator<T> rk4();
+template <class T>
+cpu::Integrator<T> implicit();
+template <class T>
+cpu::Integrator<T> xpbd();
+
 template <class T>
 const cpu::Kernels<T>* kernels_of() {
   static constexpr std::size_t lanes = hn::MaxLanes(hn::ScalableTag<T>());
@@ -39,8 +46,7 @@ const cpu::Kernels<T>* kernels_of() {
       .lanes = lanes,
       .table_size = 16,
       .actuate = actuate<T>,
-      .integrator = {integrator<PaperEuler, T>(), integrator<SymplecticEuler, T>(), integrator<VelocityVerlet, T>(),
-                     integrator<Rk4, T>(), integrator<Implicit, T>(), integrator<Xpbd, T>()},
+      .integrator = {paper_euler<T>(), symplectic_euler<T>(), velocity_verlet<T>(), rk4<T>(), implicit<T>(), xpbd<T>()},
       .energies = energies<T>};
   return &kernels;
 }

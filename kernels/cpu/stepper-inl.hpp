@@ -12,49 +12,21 @@
 #define EVODEVO_CPU_STEPPER_INL_HPP
 #endif
 
+#include "cpu/actuation-inl.hpp"
 #include "cpu/masses-inl.hpp"
-#include "cpu/springs-inl.hpp"
+#include "cpu/step.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {
 
-/// Sets the motion's forces to the forces of springs and dashpots at the relative lengths in row `row` of the tables
-/// and at the interleaved velocities.
+/// A function that sets the motion's forces to the forces of springs and dashpots at the relative lengths in row `row`
+/// of the tables and at the interleaved velocities.
 template <class T>
 using SpringPass = void (*)(const cpu::Motion<T>&, const cpu::Actuation<T>&, std::size_t row);
 
-template <bool damped, class Table, class Sums, class T>
-void set_spring_forces(const cpu::Motion<T>& motion, const cpu::Actuation<T>& actuation, std::size_t row) {
-  const Sums sums(motion);
-  const T* relative_length = actuation.relative_length + row * actuation.padded;
-  const Table lengths(relative_length);
-  const Table rates(sums.power ? actuation.relative_rate + row * actuation.padded : relative_length);
-  for (std::size_t group = 0; group < motion.groups; ++group)
-    set_spring_forces<damped>(motion, sums, group, lengths, rates);
-}
-
-template <bool damped, class Table, class T>
-SpringPass<T> spring_pass_with(cpu::Sums sums) {
-  if (sums.peak || sums.tension) return set_spring_forces<damped, Table, AnySums, T>;
-  if (sums.force && sums.power) return set_spring_forces<damped, Table, UsualSums<true, true>, T>;
-  if (sums.force) return set_spring_forces<damped, Table, UsualSums<true, false>, T>;
-  if (sums.power) return set_spring_forces<damped, Table, UsualSums<false, true>, T>;
-  return set_spring_forces<damped, Table, UsualSums<false, false>, T>;
-}
-
-/// Returns the pass over the springs that adds to the given sums.
-template <bool damped, class T>
-SpringPass<T> spring_pass(const cpu::Actuation<T>& actuation, cpu::Sums sums) {
-  if constexpr (register_table_size<T>() > 0)
-    if (actuation.materials <= register_table_size<T>()) return spring_pass_with<damped, TableInRegisters<T>, T>(sums);
-  return spring_pass_with<damped, TableInMemory<T>, T>(sums);
-}
-
-/// Returns the pass with dashpots if the body has any.
+/// Returns the pass over the springs that adds to the given sums, with dashpots if `damped` (springs.cpp).
 template <class T>
-SpringPass<T> spring_pass(const cpu::Motion<T>& motion, const cpu::Actuation<T>& actuation, cpu::Sums sums) {
-  return motion.damping != nullptr ? spring_pass<true>(actuation, sums) : spring_pass<false>(actuation, sums);
-}
+SpringPass<T> spring_pass(bool damped, const cpu::Actuation<T>& actuation, cpu::Sums sums);
 
 /// The input of a method: a body in motion, the constants of the step and the passes over the springs.
 template <class T>
@@ -104,14 +76,15 @@ struct StepMethod {
 template <class M, class T>
 void advance(const cpu::Motion<T>& motion, const cpu::StepConstants<T>& constants, const cpu::Actuation<T>& actuation,
              std::size_t steps, cpu::Sums sums) {
+  const bool damped = motion.damping != nullptr;
   const Stepper<T> stepper{motion,
                            constants,
                            actuation,
                            sums,
                            motion.groups * hn::Lanes(hn::ScalableTag<T>()),
-                           spring_pass(motion, actuation, {}),
-                           spring_pass(motion, actuation, sums),
-                           spring_pass<false>(actuation, cpu::Sums{})};
+                           spring_pass(damped, actuation, {}),
+                           spring_pass(damped, actuation, sums),
+                           spring_pass(false, actuation, {})};
   M::begin(stepper);
   for (std::size_t step = 0; step < steps; ++step) {
     M::step(stepper, step * M::rows_per_step);

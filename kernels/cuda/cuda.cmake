@@ -23,6 +23,7 @@ set(embedded
   cuda/device/streamed/sampling_streamed.cuh
   cuda/device/streamed/streamed.cu
   cuda/device/streamed/streamed.cuh
+  cuda/layout/feature_list.hpp
   cuda/layout/fixed_point.hpp
   cuda/layout/formats.hpp
   cuda/layout/point_clouds.hpp
@@ -48,7 +49,7 @@ endfunction()
 
 evodevo_embed(${embedded_sources} cuda/runtime/compiler.hpp evodevo::cuda::embedded_sources ${embedded})
 
-target_sources(evodevo_kernels PRIVATE
+set(cuda_sources
   cuda/layout/arrangement/arranged_body.cpp
   cuda/layout/arrangement/arrangement.cpp
   cuda/layout/arrangement/outline.cpp
@@ -74,5 +75,7 @@ target_sources(evodevo_kernels PRIVATE
   cuda/runtime/memory_store.cpp
   cuda/runtime/portion.cpp
   ${embedded_sources})
+target_sources(evodevo_kernels PRIVATE ${cuda_sources})
+set_source_files_properties(${cuda_sources} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)  # they share names of their own
 target_compile_definitions(evodevo_kernels PUBLIC EVODEVO_CUDA)
 target_link_libraries(evodevo_kernels PRIVATE CUDA::cudart CUDA::nvrtc)

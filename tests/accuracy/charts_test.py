@@ -9,12 +9,6 @@ from accuracy import draw
 from common import results
 
 
-class Front(unittest.TestCase):
-    def test_holds_what_nothing_beats(self):
-        points = [(2, 5), (1, 9), (3, 6), (4, 1), (4, 2)]
-        self.assertEqual(draw.front(points), [(1, 9), (2, 5), (4, 1)])
-
-
 RANKING = "floor,body,kind,method,precision,dt (s),cost (s per simulated s),rank correlation (1),low (1),high (1)," \
     "best of 20 in reference's best 3 (1),diverged (1),robots\n"
 DATA = {
@@ -59,6 +53,10 @@ class Charts(unittest.TestCase):
         results.draw(draw.CHARTS, "accuracy", [str(self.folder)])
         return {path.stem: path.read_text() for path in self.folder.glob("*.svg")}
 
+    def test_the_front_holds_what_nothing_beats(self):
+        points = [(2, 5), (1, 9), (3, 6), (4, 1), (4, 2)]
+        self.assertEqual(draw.front(points), [(1, 9), (2, 5), (4, 1)])
+
     def test_all_that_there_is_data_for_is_drawn(self):
         self.write(*DATA)
         charts = self.drawn()
@@ -81,14 +79,16 @@ class Charts(unittest.TestCase):
         self.assertEqual(points, [[[0.001, 0.01]], [[0.01, 1e-6]]])
         self.assertEqual(axes.get_title("left"), "a <b>")
 
-    def test_a_rigid_floor_is_drawn_beside_the_elastic_one(self):
+    def test_a_rigid_floor_is_drawn_beside_the_elastic_one_with_divergence_in_percent(self):
         self.write(*DATA)
         *_, gain, _, divergence = [axes for axes in draw.stability(self.folder, "").axes if axes.get_title("left")]
         for axes, points in ((gain, [[0.5, 1], [1, 1]]), (divergence, [[0.1, 0], [0.2, 0]])):
             lines = [line.get_xydata().tolist() for line in axes.lines if line.get_gid() == "rigid"]
             self.assertEqual(lines, [points])
-        texts = "\n".join(text.get_text() for text in divergence.texts)
-        self.assertIn("99.0 to 101.0 %", texts)
+        texts = [text.get_text() for text in divergence.texts]
+        self.assertIn("7.7 %", texts)
+        for told in ("99.0 to 101.0 %", "0.1 kg: the best ten keep 98 % of their fitness at dt / 4"):
+            self.assertIn(told, "\n".join(texts))
 
     def test_ranking_has_a_row_for_each_floor(self):
         self.write("ranking")
@@ -96,12 +96,6 @@ class Charts(unittest.TestCase):
         (self.folder / "ranking.csv").write_text(rows + rows.split("\n", 1)[1].replace("elastic,", "rigid,"))
         titles = [axes.get_title("left") for axes in draw.ranking(self.folder, "").axes]
         self.assertEqual([title.rsplit(", ")[-1] for title in titles], 2 * ["elastic floor"] + 2 * ["rigid floor"])
-
-    def test_divergence_is_told_in_percent(self):
-        self.write(*DATA)
-        texts = [text.get_text() for axes in draw.stability(self.folder, "").axes for text in axes.texts]
-        self.assertIn("7.7 %", texts)
-        self.assertIn("0.1 kg: the best ten keep 98 % of their fitness at dt / 4", "\n".join(texts))
 
 
 if __name__ == "__main__":

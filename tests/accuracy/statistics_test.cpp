@@ -12,19 +12,17 @@ namespace {
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 using Values = std::vector<double>;
 
-TEST(Ranks, EqualsShareTheMeanOfTheirs) { EXPECT_EQ(ranks(Values{3, 1, 3, 2}), (Values{2.5, 0, 2.5, 1})); }
-
-TEST(Ranks, WhatIsNoNumberIsBelowAllNumbers) { EXPECT_EQ(ranks(Values{-5, none, 0, none}), (Values{2, 0.5, 3, 0.5})); }
+TEST(Ranks, AreSharedByEqualsAndLowestForWhatIsNoNumber) {
+  EXPECT_EQ(ranks(Values{3, 1, 3, 2}), (Values{2.5, 0, 2.5, 1}));
+  EXPECT_EQ(ranks(Values{-5, none, 0, none}), (Values{2, 0.5, 3, 0.5}));
+}
 
 TEST(RankCorrelation, IsThatOfSpearman) {
   EXPECT_DOUBLE_EQ(rank_correlation(Values{1, 2, 3, 4}, Values{10, 200, 300, 4e4}), 1);
   EXPECT_DOUBLE_EQ(rank_correlation(Values{1, 2, 3, 4}, Values{4, 3, 2, 1}), -1);
   // 1 - 6 sum(d^2)/(n (n^2 - 1)), where the values of d^2 are 1, 1, 1, 1, 0
   EXPECT_DOUBLE_EQ(rank_correlation(Values{1, 2, 3, 4, 5}, Values{2, 1, 4, 3, 5}), 1 - 6 * 4.0 / (5 * 24));
-}
-
-TEST(RankCorrelation, IsZeroForWhatTellsNothing) {
-  EXPECT_EQ(rank_correlation(Values{1, 2, 3}, Values{none, none, none}), 0);
+  EXPECT_EQ(rank_correlation(Values{1, 2, 3}, Values{none, none, none}), 0) << "they tell nothing";
 }
 
 TEST(BootstrapInterval, HoldsTheCorrelationAndIsNarrowerForMore) {
@@ -49,17 +47,12 @@ TEST(BootstrapInterval, OfAPerfectRankingIsAPoint) {
   EXPECT_DOUBLE_EQ(interval.high, 1);
 }
 
-TEST(BestFound, IsCertainForTheTruthAndImpossibleForItsOpposite) {
+TEST(BestFound, IsCertainForTheTruthImpossibleForItsOppositeAndChanceForWhatTellsNothing) {
   Values truth(40), opposite(40);
   std::iota(truth.begin(), truth.end(), 0);
   std::iota(opposite.rbegin(), opposite.rend(), 0);
   EXPECT_EQ(best_found(truth, truth, 20, 3, 500), 1);
   EXPECT_EQ(best_found(truth, opposite, 20, 3, 500), 0);
-}
-
-TEST(BestFound, IsChanceForWhatTellsNothing) {
-  Values truth(40);
-  std::iota(truth.begin(), truth.end(), 0);
   EXPECT_NEAR(best_found(truth, Values(40, none), 20, 3, 20000), 3.0 / 20, 0.01);
 }
 

@@ -16,23 +16,19 @@ TEST(HostWork, IsCountedByStage) {
   settings.robots = scratch.write("small.toml", evodevo::testing::small_experiment);  // two cycles of development
   settings.bodies = 4;
   std::map<std::string, double> times, seconds;
+  double sum = 0;
   const Report report = host_work(settings);
   for (const Report& row : report.at("rows")) {
-    times[row.at("stage")] = row.at("times_per_robot");
-    seconds[row.at("stage")] = row.at("milliseconds_per_robot").get<double>() / 1000;
+    const std::string stage = row.at("stage");
+    times[stage] = row.at("times_per_robot");
+    seconds[stage] = row.at("milliseconds_per_robot").get<double>() / 1000;
+    EXPECT_GT(seconds[stage], 0) << stage;
+    sum += seconds[stage];
   }
-  EXPECT_EQ(times.at("making a body from a genome"), 1);
-  EXPECT_EQ(times.at("arranging a body"), 1);
-  EXPECT_EQ(times.at("arranging a changed body"), 1);
-  EXPECT_EQ(times.at("splitting materials"), 2);
-  EXPECT_EQ(times.at("packing"), 2);
-  EXPECT_EQ(times.at("unpacking"), 2);
-  EXPECT_EQ(times.at("developing a body"), 2);
-  double sum = 0;
-  for (const auto& [stage, time] : seconds) {
-    EXPECT_GT(time, 0) << stage;
-    sum += time;
-  }
+  for (const char* once : {"making a body from a genome", "arranging a body", "arranging a changed body"})
+    EXPECT_EQ(times.at(once), 1) << once;
+  for (const char* twice : {"splitting materials", "packing", "unpacking", "developing a body"})
+    EXPECT_EQ(times.at(twice), 2) << twice;
   EXPECT_LE(sum, 2 * seconds.at("everything")) << "the stages are parts of everything";
 }
 

@@ -1,7 +1,11 @@
-// Results as Markdown.
+// Reports of studies, and the bodies that they measure.
 #include "report.hpp"
 
 #include <gtest/gtest.h>
+
+#include <vector>
+
+#include "studies.hpp"
 
 namespace evodevo::tools::bench::EVODEVO_FILE {
 namespace {
@@ -28,6 +32,17 @@ TEST(Report, IsToldFromOtherJson) {
   }
   for (const char* other : {"{\"a\": 1}", "5", "[]", "{\"study\": 1, \"command\": \"y\", \"rows\": [{\"a\": 1}]}"})
     EXPECT_FALSE(is_report(Report::parse(other))) << other;
+}
+
+TEST(Report, OfNumbersDoublesTheBodiesFromRowToRow) {
+  const Report report = numbers(parse({"--study", "numbers", "--masses", "40", "--bodies", "5", "--steps", "20"}));
+  std::vector<int> bodies;
+  for (const Report& row : report.at("rows")) {
+    bodies.push_back(row.at("bodies"));
+    EXPECT_GT(row.at("spring_evaluations_per_second"), 0);
+    EXPECT_GT(row.at("with_stress"), 0);
+  }
+  EXPECT_EQ(bodies, (std::vector{1, 2, 4}));
 }
 
 TEST(Bodies, CubeIsThePapers) {

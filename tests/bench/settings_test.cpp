@@ -4,8 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <vector>
-
 #include "../common/help.hpp"
 
 namespace evodevo::tools::bench::EVODEVO_FILE {
@@ -15,11 +13,8 @@ using ::testing::HasSubstr;
 
 std::string complaint(const CommandLine& line) { return complaint_about(parse, line); }
 
-TEST(Settings, NameTheCommandThatRepeatsThem) {
+TEST(Settings, NameTheirMethodAndTheCommandThatRepeatsThem) {
   EXPECT_EQ(parse({"--json", "--body", "cube10", "--runs=3"}).command, "tools/bench --body cube10 --runs=3");
-}
-
-TEST(Settings, NameTheMethod) {
   EXPECT_EQ(parse({}).stepping().method, Method::paper_euler);
   EXPECT_EQ(parse({"--method", "implicit"}).stepping().method, Method::implicit);
 }

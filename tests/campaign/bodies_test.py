@@ -3,13 +3,13 @@ GPU needs."""
 
 import os
 import pathlib
-import tempfile
 import unittest
 import unittest.mock
 
 from campaign.bodies import AT_ONCE, BATCHES, BODIES, SANITIZED, SANITIZERS, Bodies, Sanitizers, processes
+from own_folder import PROGRAM, InOwnFolder
 
-HOSTILE = pathlib.Path(os.environ["EVODEVO_PROGRAM"]).with_name("hostile_bodies")
+HOSTILE = pathlib.Path(PROGRAM).with_name("hostile_bodies")
 # does what hostile_bodies does, but more quickly, and something else with the batch 30
 STANDS_IN = """\
 #!/bin/sh
@@ -33,27 +33,18 @@ esac
 IN_BATCH = BODIES["cuda"]
 
 
-class RandomBodies(unittest.TestCase):
+class RandomBodies(InOwnFolder):
     def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = pathlib.Path(scratch.name)
-        one_core = unittest.mock.patch("os.cpu_count", return_value=1)
-        one_core.start()
-        self.addCleanup(one_core.stop)
-
-    def program(self, name, text):
-        program = self.folder / name
-        program.write_text(text)
-        program.chmod(0o755)
-        return program
+        super().setUp()
+        self.enterContext(unittest.mock.patch("os.cpu_count", return_value=1))
 
     def sittings(self, fault, number=2, seconds=60):
-        """Returns the outcomes of short sittings, in each of which the batches of one process are tried."""
-        part, past = Bodies(self.program("hostile_bodies", STANDS_IN.format(fault=fault)), "cuda", seconds), []
+        """Returns the outcomes of short sittings, in each of which the batches of one process are tried, and the faults
+        that are found."""
+        part, past = Bodies(self.script(STANDS_IN.format(fault=fault), "hostile_bodies"), "cuda", seconds), []
         for _ in range(number):
             past += part.sitting(0, past)
-        return past
+        return past, [fault for each in past for fault in each.found]
 
     def test_real_bodies_hold(self):
         outcomes = list(Bodies(HOSTILE, "cpu").sitting(0, ()))
@@ -62,15 +53,13 @@ class RandomBodies(unittest.TestCase):
         self.assertEqual(len(outcomes), BATCHES)  # each kind once: methods, precisions, tame and hostile
 
     def test_the_next_sitting_goes_on(self):
-        outcomes = self.sittings(f"found='\"body 3: hot\"'")
+        outcomes, found = self.sittings("found='\"body 3: hot\"'")
         self.assertEqual(sum(each.tried for each in outcomes), 2 * BATCHES * IN_BATCH)
-        found = [fault for each in outcomes for fault in each.found]
         self.assertEqual(found, [f"hostile_bodies cuda 30 1 {IN_BATCH}: body 3: hot"])
         self.assertEqual({each.part for each in outcomes}, {"gpu-bodies"})
 
     def test_a_crash_is_named_by_its_batch_and_the_others_are_tried(self):
-        outcomes = self.sittings("exit 7", number=3)
-        found = [fault for each in outcomes for fault in each.found]
+        outcomes, found = self.sittings("exit 7", number=3)
         self.assertEqual(found, [f"hostile_bodies cuda 30 1 {IN_BATCH}: exit code 7"])
         tried = {what: sum(each.tried for each in outcomes if each.case == what) for what in ("kind 0", "kind 1", "not done")}
         half = 3 * BATCHES * IN_BATCH // 2
@@ -80,13 +69,13 @@ class RandomBodies(unittest.TestCase):
         with unittest.mock.patch("os.cpu_count", return_value=3 * AT_ONCE):
             self.assertEqual((processes("cpu"), processes("cuda")), (3 * AT_ONCE, AT_ONCE))
 
-    def test_what_a_program_says_before_it_fails_is_told(self):
-        found = [fault for each in self.sittings("echo no room >&2; exit 2") for fault in each.found]
-        self.assertEqual(found, [f"hostile_bodies cuda 30 1 {IN_BATCH}: exit code 2: no room"])
-
-    def test_a_hang_is_named(self):
-        found = [fault for each in self.sittings("sleep 1000", seconds=1) for fault in each.found]
-        self.assertEqual(found, [f"hostile_bodies cuda 30 1 {IN_BATCH}: not done after 1 s"])
+    def test_what_a_program_says_before_it_fails_is_told_and_a_hang_is_named(self):
+        for fault, seconds, said in (
+            ("echo no room >&2; exit 2", 60, "exit code 2: no room"),
+            ("sleep 1000", 1, "not done after 1 s"),
+        ):
+            _, found = self.sittings(fault, seconds=seconds)
+            self.assertEqual(found, [f"hostile_bodies cuda 30 1 {IN_BATCH}: {said}"])
 
     def test_a_program_that_was_not_built_is_left_out(self):
         (outcome,) = Bodies(self.folder / "hostile_bodies", "cuda").sitting(0, ())
@@ -95,8 +84,8 @@ class RandomBodies(unittest.TestCase):
 
     def test_what_sanitizers_complain_about_is_named(self):
         path = f"{self.folder}:{os.environ['PATH']}"
-        self.program("compute-sanitizer", SANITIZER)
-        part = Sanitizers(self.program("hostile_bodies", STANDS_IN.format(fault="true")), "cuda")
+        self.script(SANITIZER, "compute-sanitizer")
+        part = Sanitizers(self.script(STANDS_IN.format(fault="true"), "hostile_bodies"), "cuda")
         with unittest.mock.patch.dict(os.environ, PATH=path):
             outcomes = []
             for _ in range(2 * len(SANITIZERS)):
@@ -111,5 +100,4 @@ class RandomBodies(unittest.TestCase):
         self.assertEqual(set(found), {"racecheck", "synccheck"})
 
 
-if __name__ == "__main__":
-    unittest.main()
+unittest.main()

@@ -2,9 +2,6 @@
 
 import contextlib
 import io
-import pathlib
-import stat
-import tempfile
 import unittest
 import unittest.mock
 
@@ -13,6 +10,7 @@ from campaign.command import campaign, chosen
 from campaign.fuzz import Fuzz
 from campaign.outcomes import Outcome, Record
 from common.command_line import Failure
+from own_folder import InOwnFolder
 
 SOUND = """\
 #!/bin/sh
@@ -60,12 +58,7 @@ class Counting:
             yield Outcome(self.name, "number", 5, (f"number {number}",) if number % 3 == 2 else (), 30)
 
 
-class Campaigns(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
+class Campaigns(InOwnFolder):
     def sit(self, *parts):
         with contextlib.redirect_stdout(io.StringIO()) as told:
             campaign(60, self.folder / "out", parts)
@@ -93,17 +86,13 @@ class Campaigns(unittest.TestCase):
         return Fuzz(lambda: self.folder, OPERATORS, self.folder / "out")
 
     def target(self, name, text):
-        program = self.folder / f"fuzz_{name}"
-        program.write_text(text)
-        program.chmod(program.stat().st_mode | stat.S_IXUSR)
+        self.script(text, f"fuzz_{name}")
 
-    def test_sittings_add_up(self):
+    def test_sittings_add_up_and_parts_share_the_time(self):
         self.assertIn("| counting | 20 | 19 | 1 | 2.0 |", self.sit(Counting(4)))
         page = self.sit(Counting(3))
         self.assertIn("| counting | 35 | 33 | 2 | 3.5 |", page)
         self.assertIn("\n- number 5\n", page)
-
-    def test_parts_share_the_time(self):
         parts = [Counting(1), Counting(1)]
         self.sit(*parts)
         self.assertEqual([part.seconds for part in parts], [[30], [30]])
@@ -167,13 +156,11 @@ class Campaigns(unittest.TestCase):
         expected = ["after-mapping", "before", "edge", "neural", "pairing", "voxel"]
         self.assertEqual(words.read_text().split(), [f'"{word}"' for word in expected])
 
-    def test_a_target_that_makes_no_inputs_is_no_success(self):
+    def test_a_folder_without_targets_and_a_target_that_makes_no_inputs_are_refused(self):
+        with self.assertRaisesRegex(Failure, f"{self.folder}: .*fuzz_targets"):
+            self.sit(self.fuzz())
         self.target("silent", "#!/bin/sh\necho this is no fuzzer\n")
         with self.assertRaisesRegex(Failure, "fuzz_silent.*this is no fuzzer"):
-            self.sit(self.fuzz())
-
-    def test_a_folder_without_targets_is_refused(self):
-        with self.assertRaisesRegex(Failure, f"{self.folder}: .*fuzz_targets"):
             self.sit(self.fuzz())
 
 

@@ -6,8 +6,8 @@ import itertools
 import os
 import pathlib
 import random
+import re
 import shlex
-import tempfile
 import threading
 import tomllib
 import unittest
@@ -23,67 +23,39 @@ from campaign.experiments import BATCH, Experiments, kind, listed_operators
 from campaign.laws import Laws
 from campaign.outcomes import Outcome
 from campaign.random_experiment import Draw, without
+from own_folder import PROGRAM, InOwnFolder
 from small_experiment import small_experiment
 
-PROGRAM = os.environ["EVODEVO_PROGRAM"]
 # long enough to be interrupted after its first generation
 EXPERIMENT = small_experiment(development=True).replace("evaluations = 20", "evaluations = 400")
 
 
 class Draws(unittest.TestCase):
     def test_follow_from_their_number_and_name_every_operator(self):
-        operators = listed_operators(PROGRAM)
-        named = collections.Counter()
-
-        def count(node):
-            for value in node.values() if isinstance(node, dict) else node if isinstance(node, list) else ():
-                count(value)
-            if isinstance(node, dict) and isinstance(node.get("name"), str):
-                named[node["name"]] += 1
-
+        operators, named = listed_operators(PROGRAM), set()
         for number in range(300):
             tables = Draw(operators, random.Random(number)).experiment()
             self.assertEqual(Draw(operators, random.Random(number)).experiment(), tables)
-            self.assertEqual(tomllib.loads(tomlkit.dumps(tables)), tables)
-            count(tables)
-        missing = {each["name"] for each in operators} - set(named)
-        self.assertEqual(missing, {"cloud"})  # which needs a file
-        on_gpu = Draw(operators, random.Random(7), "cuda").experiment()
-        self.assertEqual(on_gpu["simulation"]["device"], "cuda")
+            text = tomlkit.dumps(tables)
+            self.assertEqual(tomllib.loads(text), tables)
+            named.update(re.findall(r'\bname = "(.*?)"', text))
+        self.assertEqual({each["name"] for each in operators} - named, {"cloud"})  # which needs a file
+        self.assertEqual(Draw(operators, random.Random(7), "cuda").experiment()["simulation"]["device"], "cuda")
 
     def test_variants_lack_one_thing(self):
-        tables = {"a": {"b": 1, "c": [2, 3]}, "d": [{"e": 4}, {"f": 5}]}
-        self.assertCountEqual(
-            without(tables),
-            [
-                {"d": [{"e": 4}, {"f": 5}]},
-                {"a": {"b": 1, "c": [2, 3]}},
-                {"a": {"c": [2, 3]}, "d": [{"e": 4}, {"f": 5}]},
-                {"a": {"b": 1}, "d": [{"e": 4}, {"f": 5}]},
-                {"a": {"b": 1, "c": [2, 3]}, "d": [{"f": 5}]},
-                {"a": {"b": 1, "c": [2, 3]}, "d": [{}, {"f": 5}]},
-                {"a": {"b": 1, "c": [2, 3]}, "d": [{"e": 4}]},
-                {"a": {"b": 1, "c": [2, 3]}, "d": [{"e": 4}, {}]},
-            ],
-        )
+        a, d = {"b": 1, "c": [2, 3]}, [{"e": 4}, {"f": 5}]
+        without_a_part = [{"a": {"c": [2, 3]}, "d": d}, {"a": {"b": 1}, "d": d}]
+        without_a_part += [{"a": a, "d": some} for some in ([{"f": 5}], [{}, {"f": 5}], [{"e": 4}], [{"e": 4}, {}])]
+        self.assertCountEqual(without({"a": a, "d": d}), [{"d": d}, {"a": a}, *without_a_part])
 
 
-class Programs(unittest.TestCase):
+class Programs(InOwnFolder):
     """Programs that break one law each."""
 
     def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = pathlib.Path(scratch.name)
+        super().setUp()
         self.file = self.folder / "experiment.toml"
         self.file.write_text(EXPERIMENT)
-
-    def program(self, lines):
-        """Returns a program. `lines`: what it does before it does what evodevo does."""
-        program = self.folder / "program"
-        program.write_text(f"#!/bin/sh\n{lines}\nexec {shlex.quote(PROGRAM)} \"$@\"\n")
-        program.chmod(0o755)
-        return program
 
     def laws(self, program, **limits):
         return Laws(program, self.folder / "runs", built=pathlib.Path(PROGRAM).parent.parent, **limits)
@@ -94,10 +66,8 @@ class Programs(unittest.TestCase):
             self.laws(self.program(lines), **limits).hold(self.file)
         return str(caught.exception)
 
-    def test_a_sound_program_holds_all(self):
+    def test_a_sound_program_holds_all_and_a_table_of_defaults_may_be_left_out(self):
         self.assertTrue(self.laws(PROGRAM).hold(self.file))
-
-    def test_a_table_of_defaults_may_be_left_out(self):
         tables = tomllib.loads(EXPERIMENT)
         del tables["simulation"]
         self.file.write_text(tomlkit.dumps(tables))
@@ -136,32 +106,40 @@ class Programs(unittest.TestCase):
         self.file.write_text(EXPERIMENT.replace('"voxel"', '"voxels"'))
         self.assertFalse(self.laws(PROGRAM).hold(self.file))
 
-    def test_a_refusal_without_a_place_is_one(self):
-        self.assertRegex(self.broken("[ $1 != check ] || { echo no >&2; exit 2; }"), "^check: exit code 2: no")
-
-    def test_crashes(self):
-        self.assertRegex(self.broken("[ $1 != check ] || kill -SEGV $$"), "^check: exit code -11")
-        self.assertRegex(self.broken("[ $1 != run ] || exit 7"), "^run: exit code 7")
+    def test_each_law(self):
+        other = r's/("trial": "again".*"value": )[^,]*/\17/; /"trial": "again"/,/"value"/ s/("value": )[^,]*/\17/'
+        evodevo = f'{shlex.quote(PROGRAM)} "$@"'
+        for lines, law in (
+            ("[ $1 != check ] || { echo no >&2; exit 2; }", "^check: exit code 2: no"),  # a refusal without a place
+            ("[ $1 != check ] || kill -SEGV $$", "^check: exit code -11"),
+            ("[ $1 != run ] || exit 7", "^run: exit code 7"),
+            (
+                'case "$1" in run-many) sed -i \'s/"--threads", "2"/&, "--seed", "99"/\' "$2" ;; esac',
+                "^beside another run: .* differs: ",
+            ),
+            (
+                'case "$*" in *"--threads 3"*) set -- "$@" --seed 99 ;; esac',
+                "^with 3 threads instead of 1: .* differs: ",
+            ),
+            ("[ $1 != resume ] || exit 0", "^with an interruption: .* differs: "),
+            (f"[ $1 != show ] || {{ {evodevo} | sed -E '{other}'; exit; }}", "^verification: again 7"),
+            (
+                f"case $1:$2 in life:*/random-places) {evodevo} | sed '0,/\"gone\"/s//\"come\"/'; exit ;; esac",
+                "^random-places: spring come 3 instead of 2",
+            ),
+            (
+                'case "$*" in simulate*=float*) set -- "$@" --set scene.gravity.acceleration=15 ;; esac',
+                "^precision: float on cpu differs from double on cpu by [0-9.e+]+ .* after 20 steps",
+            ),
+        ):
+            with self.subTest(law):
+                self.assertRegex(self.broken(lines), law)
 
     def test_commands_that_do_not_end(self):
         self.assertRegex(self.broken("[ $1 != check ] || exec sleep 1000", seconds=1), "^check: not done after 1 s")
-        deaf = self.program("trap '' INT; echo generation 0; exec sleep 1000")
-        with self.assertRaisesRegex(Broken, "^run, interrupted: not done after 1 s"):
-            self.laws(deaf, seconds=1).run_in_parts(self.file, self.folder / "parts")
-        silent = self.program("exec sleep 1000")
-        with self.assertRaisesRegex(Broken, "^run, interrupted: not done after 1 s"):
-            self.laws(silent, seconds=1).run_in_parts(self.file, self.folder / "parts")
-
-    def test_what_cannot_be_shown(self):
-        self.assertRegex(self.broken("[ $1 != show ] || exit 7"), "^show: exit code 7")
-
-    def test_results_that_depend_on_other_runs_of_the_process(self):
-        fault = 'case "$1" in run-many) sed -i \'s/"--threads", "2"/&, "--seed", "99"/\' "$2" ;; esac'
-        self.assertRegex(self.broken(fault), "^beside another run: .* differs: ")
-
-    def test_results_that_depend_on_threads(self):
-        fault = 'case "$*" in *"--threads 3"*) set -- "$@" --seed 99 ;; esac'
-        self.assertRegex(self.broken(fault), "^with 3 threads instead of 1: .* differs: ")
+        for deaf_or_silent in ("trap '' INT; echo generation 0; exec sleep 1000", "exec sleep 1000"):
+            with self.assertRaisesRegex(Broken, "^run, interrupted: not done after 1 s"):
+                self.laws(self.program(deaf_or_silent), seconds=1).run_in_parts(self.file, self.folder / "parts")
 
     def test_results_that_depend_on_ranks(self):
         self.needs("3 ranks")
@@ -171,27 +149,6 @@ class Programs(unittest.TestCase):
     def needs(self, law):
         if law in self.laws(PROGRAM).left_out:
             self.skipTest(f"{law}: {self.laws(PROGRAM).left_out[law]}")
-
-    def test_runs_that_are_not_resumed(self):
-        self.assertRegex(self.broken("[ $1 != resume ] || exit 0"), "^with an interruption: .* differs: ")
-
-    def test_scores_that_are_not_repeated(self):
-        other = r's/("trial": "again".*"value": )[^,]*/\17/; /"trial": "again"/,/"value"/ s/("value": )[^,]*/\17/'
-        fault = f"[ $1 != show ] || {{ {shlex.quote(PROGRAM)} \"$@\" | sed -E '{other}'; exit; }}"
-        self.assertRegex(self.broken(fault), "^verification: again 7")
-
-    def test_robots_that_are_changed_by_other_amounts_at_random_places(self):
-        changed = f"{shlex.quote(PROGRAM)} \"$@\" | sed '0,/\"gone\"/s//\"come\"/'"
-        fault = f"case $1:$2 in life:*/random-places) {changed}; exit ;; esac"
-        self.assertRegex(self.broken(fault), "^random-places: spring come 3 instead of 2")
-
-    def test_robots_that_are_born_otherwise_at_random_places(self):
-        fault = 'case "$*" in *development.control=random-places*) set -- "$@" --set encoding.size=[1,1,1] ;; esac'
-        self.assertRegex(self.broken(fault), "^random-places: born with .*8.*, not .*12")
-
-    def test_motion_that_depends_on_precision(self):
-        fault = 'case "$*" in simulate*=float*) set -- "$@" --set scene.gravity.acceleration=15 ;; esac'
-        self.assertRegex(self.broken(fault), "^precision: float on cpu differs from double on cpu by [0-9.e+]+ .* after 20 steps")
 
     def test_pages_with_errors(self):
         self.needs("pages")
@@ -206,8 +163,7 @@ class Programs(unittest.TestCase):
         with unittest.mock.patch.dict(os.environ, PATH="/nowhere"):
             self.assertRegex(" ".join(sorted(self.laws(PROGRAM).left_out.items())[0]), "^3 ranks there is no mpirun")
             self.assertIn("Node.js", self.laws(PROGRAM).left_out["pages"])
-        elsewhere = Laws(PROGRAM, self.folder / "runs", built=self.folder)
-        self.assertEqual(set(elsewhere.left_out), {"3 ranks", "pages"})
+        self.assertEqual(set(Laws(PROGRAM, self.folder / "runs", built=self.folder).left_out), {"3 ranks", "pages"})
 
 
 class Amounts(unittest.TestCase):
@@ -229,7 +185,7 @@ class Amounts(unittest.TestCase):
             self.assertEqual(different(*map(collections.Counter, (expected, given)), born), wrong)
 
 
-class Shrinking(unittest.TestCase):
+class Shrinking(InOwnFolder):
     def test_faults_of_the_same_kind_are_told_from_others(self):
         crash, hang = "run: exit code -11: ", "run: not done after 60 s"
         same = "with 3 threads instead of 1: scores differs: (0, 1)", "with 3 threads instead of 1: notes differs: 7"
@@ -238,14 +194,17 @@ class Shrinking(unittest.TestCase):
         others = crash, hang, "run: exit code 1: no", "show: exit code 1: no", same[0]
         self.assertEqual(len(set(map(kind, others))), len(others))
 
+    def until_found(self):
+        """Returns the outcomes of sittings of one experiment each, until one breaks the law; and the fault."""
+        part, outcomes = Experiments(listed_operators(PROGRAM), [self.NothingRests()], self.folder), []
+        while not any(each.found for each in outcomes):
+            outcomes += part.sitting(1e-9, outcomes)
+        return outcomes, outcomes[-2].found[0]
+
     def test_shrinking_ends_in_time(self):
-        with tempfile.TemporaryDirectory() as scratch, unittest.mock.patch("campaign.experiments.SHRINKING", 0):
-            part = Experiments(listed_operators(PROGRAM), [self.NothingRests()], pathlib.Path(scratch))
-            outcomes = []
-            while not any(each.found for each in outcomes):
-                outcomes += part.sitting(1e-9, outcomes)
-            file = pathlib.Path(outcomes[-2].found[0].partition(": ")[0])
-            self.assertGreater(len(tomllib.loads(file.read_text())), 1)
+        with unittest.mock.patch("campaign.experiments.SHRINKING", 0):
+            _, fault = self.until_found()
+        self.assertGreater(len(tomllib.loads(pathlib.Path(fault.partition(": ")[0]).read_text())), 1)
 
     class NothingRests:
         """Laws that every experiment breaks whose bodies return to rest."""
@@ -259,24 +218,21 @@ class Shrinking(unittest.TestCase):
             return "scenario" not in tables
 
     def test_only_what_breaks_the_law_is_left(self):
-        with tempfile.TemporaryDirectory() as scratch:
-            folder = pathlib.Path(scratch)
-            part = Experiments(listed_operators(PROGRAM), [self.NothingRests()], folder)
-            outcomes = []
-            while not any(each.found for each in outcomes):
-                outcomes += part.sitting(1e-9, outcomes)  # one experiment
-            fault = outcomes[-2].found[0]
-            file, _, law = fault.partition(": ")
-            self.assertEqual(law, "rest: not reached")
-            self.assertEqual(tomllib.loads(pathlib.Path(file).read_text()), {"development": {"reset": True}})
-            self.assertEqual([each.name for each in (folder / "found").iterdir()], [pathlib.Path(file).name])
-            self.assertEqual(sum(each.tried for each in outcomes), len(outcomes) / 2)
+        outcomes, fault = self.until_found()
+        file, _, law = fault.partition(": ")
+        self.assertEqual(law, "rest: not reached")
+        self.assertEqual(tomllib.loads(pathlib.Path(file).read_text()), {"development": {"reset": True}})
+        self.assertEqual(self.found(), [pathlib.Path(file).name])
+        self.assertEqual(sum(each.tried for each in outcomes), len(outcomes) / 2)
+
+    def found(self):
+        """Returns the names of the files that are kept since they show a fault."""
+        return [each.name for each in (self.folder / "found").iterdir()]
 
     def test_what_is_not_shown_again_is_found_nevertheless(self):
         laws = unittest.mock.Mock(left_out={})
         laws.hold.side_effect = [Broken("rest: not reached"), *[True] * 1000]
-        with tempfile.TemporaryDirectory() as scratch:
-            outcomes = list(Experiments(listed_operators(PROGRAM), [laws], pathlib.Path(scratch)).sitting(1e-9, ()))
+        outcomes = list(Experiments(listed_operators(PROGRAM), [laws], self.folder).sitting(1e-9, ()))
         self.assertRegex(outcomes[0].found[0], "experiment-0.toml: rest: not reached; not ")
 
     class BrokenTogether:
@@ -295,35 +251,29 @@ class Shrinking(unittest.TestCase):
                 raise Broken("rest: not reached")
             return True
 
-    def on_gpu(self, folder, laws):
+    def on_gpu(self, laws):
         """Returns the first outcomes of a sitting on a GPU, of which no experiment is made smaller: what was accepted, and
         what was refused."""
-        part = Experiments(listed_operators(PROGRAM), [laws], folder, "cuda")
+        part = Experiments(listed_operators(PROGRAM), [laws], self.folder, "cuda")
         with unittest.mock.patch("campaign.experiments.without", lambda tables: ()):
             return [*itertools.islice(part.sitting(1e-9, ()), 1, 3)]
 
     def test_what_is_broken_together_is_looked_for_alone(self):
-        with tempfile.TemporaryDirectory() as scratch:
-            folder = pathlib.Path(scratch)
-            runs, refused = self.on_gpu(folder, self.BrokenTogether([7]))
-            self.assertEqual((runs.tried, refused.tried), (BATCH, 0))
-            self.assertRegex(" ".join(runs.found), "^[^ ]*experiment-7.toml: rest: not reached$")
-            self.assertEqual([each.name for each in (folder / "found").iterdir()], ["experiment-7.toml"])
+        runs, refused = self.on_gpu(self.BrokenTogether([7]))
+        self.assertEqual((runs.tried, refused.tried), (BATCH, 0))
+        self.assertRegex(" ".join(runs.found), "^[^ ]*experiment-7.toml: rest: not reached$")
+        self.assertEqual(self.found(), ["experiment-7.toml"])
 
     def test_what_is_only_broken_together_is_kept(self):
-        with tempfile.TemporaryDirectory() as scratch:
-            folder = pathlib.Path(scratch)
-            runs, _ = self.on_gpu(folder, self.BrokenTogether())
-            self.assertRegex(" ".join(runs.found), "experiment-0.toml .*experiment-19.toml: together: scores: nan")
-            self.assertEqual(len([*(folder / "found").iterdir()]), BATCH)
+        runs, _ = self.on_gpu(self.BrokenTogether())
+        self.assertRegex(" ".join(runs.found), "experiment-0.toml .*experiment-19.toml: together: scores: nan")
+        self.assertEqual(len(self.found()), BATCH)
 
     def test_on_a_gpu_a_batch_is_tried_together(self):
         laws = unittest.mock.Mock(left_out={"pages": "there is no browser"})
         laws.hold_together.side_effect = lambda files: [i % 4 > 0 for i, _ in enumerate(files)]
-        with tempfile.TemporaryDirectory() as scratch:
-            folder = pathlib.Path(scratch)
-            runs, refused = self.on_gpu(folder, laws)
-            self.assertEqual([*(folder / "found").iterdir()], [])
+        runs, refused = self.on_gpu(laws)
+        self.assertEqual(self.found(), [])
         self.assertEqual((runs.tried, refused.tried, runs.found + refused.found), (BATCH * 3 // 4, BATCH // 4, ()))
         laws.hold.assert_not_called()
 
@@ -345,9 +295,8 @@ class Shrinking(unittest.TestCase):
     def test_as_many_are_tried_at_once_as_there_are_laws(self):
         barrier = threading.Barrier(2)
         laws = [self.WaitsForAnother(barrier) for _ in range(2)]
-        with tempfile.TemporaryDirectory() as scratch:
-            part = Experiments(listed_operators(PROGRAM), laws, pathlib.Path(scratch))
-            outcomes = list(itertools.islice(part.sitting(1e9, ()), 3))
+        part = Experiments(listed_operators(PROGRAM), laws, self.folder)
+        outcomes = list(itertools.islice(part.sitting(1e9, ()), 3))
         self.assertEqual([(each.case, each.tried) for each in outcomes[1:]], [("runs", BATCH), ("refused by check", 0)])
         self.assertEqual([fault for each in outcomes for fault in each.found], [])
 
@@ -377,18 +326,15 @@ class Shrinking(unittest.TestCase):
             return len(self.opened) == 2
 
     def test_a_page_of_each_batch_is_opened_and_what_is_left_out_is_named(self):
-        nothing_smaller = unittest.mock.patch("campaign.experiments.without", lambda tables: ())
-        with tempfile.TemporaryDirectory() as scratch, nothing_smaller:
-            part = Experiments(listed_operators(PROGRAM), [self.NoPageOpens()], pathlib.Path(scratch))
+        with unittest.mock.patch("campaign.experiments.without", lambda tables: ()):
+            part = Experiments(listed_operators(PROGRAM), [self.NoPageOpens()], self.folder)
             past = [Outcome("experiments", case, tried, (), 1) for case, tried in (("runs", 100), ("pages", 5))]
             outcomes = list(itertools.islice(part.sitting(1e9, past), 7))
         cases = [(each.case, each.tried, len(each.found)) for each in outcomes]
-        batch = [("runs", 6, 0), ("refused by check", 14, 0), ("pages", 1, 0)]
         self.assertEqual(cases[0], ("3 ranks: left out, since there is no mpirun", 0, 0))
-        self.assertEqual(cases[1:4], batch)
+        self.assertEqual(cases[1:4], [("runs", 6, 0), ("refused by check", 14, 0), ("pages", 1, 0)])
         self.assertEqual(cases[4:], [("runs", 7, 0), ("refused by check", 13, 0), ("pages", 1, 1)])
         self.assertIn(f"experiment-{100 + BATCH + 1}.toml: page: does not open", outcomes[-1].found[0])
 
 
-if __name__ == "__main__":
-    unittest.main()
+unittest.main()

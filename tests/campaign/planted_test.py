@@ -1,17 +1,16 @@
 """Tests that faults are planted in sources, one at a time, and that those are reported which no test notices."""
 
 import collections
-import pathlib
 import shutil
 import subprocess
-import tempfile
 import textwrap
 import unittest
 
 from campaign.faults import KINDS, faults
-from campaign.planted import Planted, drawn
+from campaign.planted import Planted
 from campaign.workshop import APART, Group, Workshop
 from common.command_line import Failure
+from own_folder import InOwnFolder
 
 CAN_TRY = (
     all(map(shutil.which, ("git", "setpriv", "unshare")))
@@ -87,11 +86,9 @@ class Sources(unittest.TestCase):
             made[fault.kind].append(fault.in_text(text))
         return dict(made)
 
-    def test_operators(self):
+    def test_operators_and_bounds(self):
         for one, other in (("a + b", "a - b"), ("a * b", "a / b"), ("a && b", "a || b"), ("a == b", "a != b"), ("a -= b", "a += b")):
             self.assertEqual(self.planted(one), {"operator": [other]})
-
-    def test_bounds(self):
         for one, other in (("a < b", "a <= b"), ("a <= b", "a < b"), ("a > b", "a >= b"), ("a >= b", "a > b")):
             self.assertEqual(self.planted(one), {"bound": [other]})
 
@@ -101,16 +98,12 @@ class Sources(unittest.TestCase):
         self.assertEqual(self.planted("seconds = 1;"), {"constant": ["seconds = 2;"]})
 
     def test_calls(self):
-        self.assertEqual(
-            self.planted("{ f(a); if (c) list.of->add(f(b), g()); else n::h(\nc); }"),
-            {
-                "call": [
-                    "{ {} if (c) list.of->add(f(b), g()); else n::h(\nc); }",
-                    "{ f(a); if (c) {} else n::h(\nc); }",
-                    "{ f(a); if (c) list.of->add(f(b), g()); else {} }",
-                ]
-            },
-        )
+        made = [
+            "{ {} if (c) list.of->add(f(b), g()); else n::h(\nc); }",
+            "{ f(a); if (c) {} else n::h(\nc); }",
+            "{ f(a); if (c) list.of->add(f(b), g()); else {} }",
+        ]
+        self.assertEqual(self.planted("{ f(a); if (c) list.of->add(f(b), g()); else n::h(\nc); }"), {"call": made})
 
     def test_what_is_no_code_or_shows_nothing_stays(self):
         for text in (
@@ -131,13 +124,11 @@ class Sources(unittest.TestCase):
 
 
 @unittest.skipUnless(CAN_TRY, "there is no git, setpriv or unshare, or this system does not allow `unshare --pid`")
-class Sittings(unittest.TestCase):
+class Sittings(InOwnFolder):
     maxDiff = None
 
     def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = pathlib.Path(scratch.name)
+        super().setUp()
         self.root, self.out = self.folder / "checkout", self.folder / "out"
         for name, text in PROJECT.items():
             self.write(name, textwrap.dedent(text))
@@ -202,19 +193,16 @@ class Sittings(unittest.TestCase):
         workshop.open()
         self.assertNotIn("count", (workshop.sources / "framework" / "main.cpp").read_text())
 
-    def test_tests_that_fail_without_a_fault_are_refused(self):
-        self.write("framework/main.cpp", "int main() { return 1; }\n")
-        self.commit()
-        with self.assertRaisesRegex(Failure, "^ctest: Program, .*commit"):
-            self.sit(1)
-
-    def test_a_commit_that_cannot_be_built_is_refused(self):
-        self.write("framework/main.cpp", "int main() { return }\n")
-        self.commit()
-        with self.assertRaisesRegex(Failure, f"^{self.out.resolve()}/planted/sources: .* built"):
-            self.sit(1)
-
-    def test_a_folder_without_a_commit_is_refused(self):
+    def test_a_commit_that_cannot_be_tried_is_refused(self):
+        sources = f"{self.out.resolve()}/planted/sources"
+        for main, said in (
+            ("int main() { return 1; }\n", "^ctest: Program, .*commit"),
+            ("int main() { return }\n", f"^{sources}: .* built"),
+        ):
+            self.write("framework/main.cpp", main)
+            self.commit()
+            with self.assertRaisesRegex(Failure, said):
+                self.sit(1)
         self.root = self.folder
         with self.assertRaisesRegex(Failure, "^git fetch: .*checkout"):
             self.sit(1)
@@ -232,5 +220,4 @@ class Sittings(unittest.TestCase):
         self.assertIsNone(failed("sh", "-c", f'[ "$HOME" = {home} ] && [ -z "$(ls -A "$TMPDIR")" ]'))
 
 
-if __name__ == "__main__":
-    unittest.main()
+unittest.main()

@@ -1,14 +1,13 @@
 """Tests that a campaign notices what a long run takes and does not give back."""
 
 import contextlib
-import os
 import pathlib
 import sqlite3
 import sys
-import tempfile
 import unittest
 
 from campaign.soak import Sample, Soak, archived
+from own_folder import PROGRAM, InOwnFolder
 
 # Stands in for evodevo: a run of 400 generations, each of which adds 100 kB to the archive and may leak.
 RUN = """\
@@ -31,17 +30,10 @@ end.set()
 """
 
 
-class Soaks(unittest.TestCase):
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = pathlib.Path(scratch.name)
-
+class Soaks(InOwnFolder):
     def sit(self, leak, past=()):
         """Returns the outcome of a run that ends by itself, long before the sitting does."""
-        program = self.folder / "program"
-        program.write_text(RUN.format(python=sys.executable, leak=leak))
-        program.chmod(0o755)
+        program = self.script(RUN.format(python=sys.executable, leak=leak))
         (outcome,) = Soak(program, self.folder / "out", pause=0).sitting(600, past)
         return outcome
 
@@ -49,11 +41,11 @@ class Soaks(unittest.TestCase):
         """Returns what is said of the one fault."""
         (fault,) = self.sit(leak).found or ("nothing",)
         file, _, text = fault.partition(": ")
-        self.assertEqual(pathlib.Path(file), self.folder.resolve() / "out" / "soak" / "samples.csv")
+        self.assertEqual(pathlib.Path(file), self.folder / "out" / "soak" / "samples.csv")
         return text
 
-    def test_evodevo_goes_on(self):
-        soak = Soak(os.environ["EVODEVO_PROGRAM"], self.folder / "out", pause=0)
+    def test_evodevo_is_asked_to_stop_when_the_time_is_over_and_goes_on(self):
+        soak = Soak(PROGRAM, self.folder / "out", pause=0)
         (first,) = soak.sitting(1, [])
         (second,) = soak.sitting(0, [first])  # at least one generation, however little time there is
         self.assertEqual((first.found, second.found), ((), ()))
@@ -93,14 +85,5 @@ class Soaks(unittest.TestCase):
         crash = "if generation == 7: print('out of', 'luck', sep='\\n', file=sys.stderr); sys.exit(7)"
         self.assertEqual(self.found(crash), "exit code 7: out of / luck")
 
-    def test_a_run_is_asked_to_stop_when_the_time_is_over(self):
-        program = self.folder / "program"
-        program.write_text("#!/bin/sh\ntrap 'exit 130' INT\necho generation 0\nwhile :; do echo generation 1; done\n")
-        program.chmod(0o755)
-        (outcome,) = Soak(program, self.folder / "out").sitting(0.1, [])
-        self.assertEqual(outcome.found, ())
-        self.assertGreater(outcome.tried, 0)
 
-
-if __name__ == "__main__":
-    unittest.main()
+unittest.main()

@@ -1,14 +1,11 @@
 """Tests that programs which lose what they have stored are found out: programs that stand in for evodevo, each with one
 fault."""
 
-import os
 import pathlib
 import random
-import shlex
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 
@@ -17,9 +14,9 @@ from campaign.outcomes import Outcome
 from campaign.power_loss import SHARES, Disk
 from campaign.storage import DyingRank, Storage
 from common.command_line import Failure
+from own_folder import PROGRAM, InOwnFolder
 
-PROGRAM = pathlib.Path(os.environ["EVODEVO_PROGRAM"])
-LIBRARY = PROGRAM.resolve().parents[1] / "lib" / "faults.so"
+LIBRARY = pathlib.Path(PROGRAM).resolve().parents[1] / "lib" / "faults.so"
 
 # Stores three generations as evodevo does. What `fault` names goes wrong.
 STAND_IN = """\
@@ -105,17 +102,9 @@ elif fault == "cannot show" or not (given.input / "run.sqlite").exists():
 """
 
 
-class StandIns(unittest.TestCase):
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = pathlib.Path(scratch.name).resolve()
-
+class StandIns(InOwnFolder):
     def stand_in(self, fault=""):
-        program = self.folder / "stand-in"
-        program.write_text(STAND_IN.format(python=sys.executable, fault=fault))
-        program.chmod(0o755)
-        return program
+        return self.script(STAND_IN.format(python=sys.executable, fault=fault), "stand-in")
 
     def cases(self, program):
         storage = Storage(program, LIBRARY, self.folder / "out")
@@ -124,48 +113,35 @@ class StandIns(unittest.TestCase):
     def found(self, fault, case):
         """Returns the first fault that a case finds in a stand-in, beginning with the last call."""
         case = self.cases(self.stand_in(fault))[case]
-        numbers = range(case.count() - 1, -1, -1)
-        return next((found for number in numbers for found in case.faults(number)), "nothing")
+        return next((found for number in range(case.count() - 1, -1, -1) for found in case.faults(number)), "nothing")
 
     def test_a_sound_one_holds(self):
         for name, case in self.cases(self.stand_in()).items():
             for number in (0, 25) if case.count() else ():
                 self.assertEqual(case.faults(number), [], name)
 
-    def test_errors_that_it_ignores(self):
-        for case in ("run: EIO", "run: full", "run with journal delete: EIO", "run: ENOMEM"):
-            self.assertRegex(self.found("goes on", case), r"\): exit code 0: ")
-
-    def test_crashes(self):
-        self.assertRegex(self.found("crashes", "run: EIO"), r"call \d+ \(.*: exit code -6: ")
-
-    def test_silence(self):
-        self.assertRegex(self.found("says nothing", "run: EIO"), ": exit code 1: ")
-
-    def test_short_writes(self):
-        self.assertRegex(self.found("writes once", "run: short"), "a line of the log that is no generation")
-
-    def test_clocks_that_it_trusts(self):
-        for way in ("forward", "back"):
-            self.assertRegex(self.found("trusts the clock", f"run: clock {way}"), ": exit code 1: ")
-
-    def test_deaths_that_it_does_not_survive(self):
-        for fault in ("tells too early", "begins again"):
-            self.assertRegex(self.found(fault, "run: kill"), r"lost: generation \d ")
-        self.assertRegex(self.found("keeps no journal", "run with journal delete: torn"), "again: |damaged")
-
-    def test_what_cannot_be_shown(self):
-        self.assertRegex(self.found("cannot show", "run: kill"), "show: exit code 1: ")
-
-    def test_losses_of_power(self):
-        for fault in ("does not synchronise", "forgets folders"):
-            self.assertRegex(self.found(fault, "run: loss of power"), "show: |lost: |damaged|the same command again")
-
-    def test_a_second_writer(self):
-        self.assertRegex(self.found("does not lock", "run with journal delete: two writers"), "generations differs")
-
-    def test_files_that_are_replaced(self):
-        self.assertRegex(self.found("looks away", "run: moved and replaced files"), ": exit code 0: ")
+    def test_each_fault_is_found(self):
+        deleting = "run with journal delete"
+        after_loss = "show: |lost: |damaged|the same command again"
+        for fault, case, said in (
+            *(("goes on", f"run{case}", r"\): exit code 0: ")
+              for case in (": EIO", ": full", " with journal delete: EIO", ": ENOMEM")),
+            ("crashes", "run: EIO", r"call \d+ \(.*: exit code -6: "),
+            ("says nothing", "run: EIO", ": exit code 1: "),
+            ("writes once", "run: short", "a line of the log that is no generation"),
+            ("trusts the clock", "run: clock forward", ": exit code 1: "),
+            ("trusts the clock", "run: clock back", ": exit code 1: "),
+            ("tells too early", "run: kill", r"lost: generation \d "),
+            ("begins again", "run: kill", r"lost: generation \d "),
+            ("keeps no journal", f"{deleting}: torn", "again: |damaged"),
+            ("cannot show", "run: kill", "show: exit code 1: "),
+            ("does not synchronise", "run: loss of power", after_loss),
+            ("forgets folders", "run: loss of power", after_loss),
+            ("does not lock", f"{deleting}: two writers", "generations differs"),
+            ("looks away", "run: moved and replaced files", ": exit code 0: "),
+        ):
+            with self.subTest(f"{fault}, {case}"):
+                self.assertRegex(self.found(fault, case), said)
 
     def test_what_is_found_can_be_repeated(self):
         again = self.found("crashes", "run: EIO").rpartition("; again: ")[2]
@@ -188,12 +164,7 @@ class StandIns(unittest.TestCase):
         self.assertTrue(calls[0] and calls[1] and not set(calls[0]) & set(calls[1]), calls)
 
 
-class Evodevo(unittest.TestCase):
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = pathlib.Path(scratch.name).resolve()
-
+class Evodevo(InOwnFolder):
     def test_can_be_tried_with_each_case(self):
         for case in Storage(PROGRAM, LIBRARY, self.folder).cases():
             for number in (3, 104) if case.count() else ():
@@ -220,10 +191,7 @@ class Evodevo(unittest.TestCase):
         self.assertEqual(len(ranks), 2)
 
     def test_a_rank_whose_death_costs_generations_is_found(self):
-        program = self.folder / "program"
-        alone = '[ -n "$OMPI_COMM_WORLD_RANK" ] || rm -rf "${5%log}run"'  # $5 is the log beside the run
-        program.write_text(f'#!/bin/sh\n{alone}\nexec {shlex.quote(str(PROGRAM))} "$@"\n')
-        program.chmod(0o755)
+        program = self.program('[ -n "$OMPI_COMM_WORLD_RANK" ] || rm -rf "${5%log}run"')  # $5 is the log beside the run
         case = next(case for case in Storage(program, LIBRARY, self.folder).cases() if isinstance(case, DyingRank))
         if case.count() == 0:
             self.skipTest(case.missing)
@@ -231,13 +199,12 @@ class Evodevo(unittest.TestCase):
         self.assertRegex(" ".join(found), r"rank 0 at message \d+ \((send|receive)\): lost: generation 0")
 
 
-class Libraries(unittest.TestCase):
+class Libraries(InOwnFolder):
     """What the library does to the calls of a program, here of this Python."""
 
     def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.faults = Faults(LIBRARY, pathlib.Path(scratch.name).resolve() / "case")
+        super().setUp()
+        self.faults = Faults(LIBRARY, self.folder / "case")
         self.faults.folder.mkdir()
         self.file = self.faults.folder / "file"
 
@@ -250,33 +217,28 @@ class Libraries(unittest.TestCase):
         self.assertEqual(self.call(f"{self.WRITES}\nos.fsync(f)\nos.unlink(file)").stdout, "4 2\n")
         opened, *rest = [call for call in self.faults.recorded() if call.name != "clock"]
         self.assertEqual(opened, Call("open", opened.result, "/file", "new", b""))
-        expected = [
-            Call("write", 4, "/file", "0", b"abcd"),
-            Call("write", 2, "/file", "4", b"ef"),
-            Call("fsync", 0, "/file", "", b""),
-            Call("unlink", 0, "/file", "", b""),
-        ]
-        self.assertEqual(rest, expected)
+        writes = [Call("write", 4, "/file", "0", b"abcd"), Call("write", 2, "/file", "4", b"ef")]
+        self.assertEqual(rest, [*writes, Call("fsync", 0, "/file", "", b""), Call("unlink", 0, "/file", "", b"")])
 
     def test_one_call_fails(self):
         for kind in ("EIO", "EINTR", "ENOMEM", "full"):
             self.assertRegex(self.call("os.mkdir(file)", Fault(kind, 1)).stderr, "Error: ")
             self.assertFalse(self.file.exists())
         self.assertEqual(self.call("os.mkdir(file)", Fault("EIO", 2)).returncode, 0)
+        self.file.rmdir()
 
-    def test_a_full_disk_stays_full(self):
+        # a full disk stays full
         self.assertIn("No space", self.call(self.WRITES, Fault("full", 1)).stderr)
         lines = self.WRITES.replace("print", "\ntry: os.write(f, b'x')\nexcept OSError: pass\nprint")
         self.assertIn("No space", self.call(lines, Fault("full", 2)).stderr)
 
-    def test_writes_are_cut(self):
+    def test_writes_are_cut_and_programs_are_killed(self):
         self.assertEqual(self.call(self.WRITES, Fault("short", 2)).stdout, "2 2\n")
         self.assertEqual(self.file.read_bytes(), b"abef")
         self.file.unlink()
         self.assertEqual(self.call(self.WRITES, Fault("torn", 3)).returncode, -9)
         self.assertEqual(self.file.read_bytes(), b"abcde")
-
-    def test_programs_are_killed(self):
+        self.file.unlink()
         self.assertEqual(self.call(self.WRITES, Fault("kill", 3)).returncode, -9)
         self.assertEqual(self.file.read_bytes(), b"abcd")
 
@@ -287,13 +249,8 @@ class Libraries(unittest.TestCase):
             self.assertEqual(tuple(round(jump / 3600) for jump in jumps), hours)
 
 
-class Disks(unittest.TestCase):
+class Disks(InOwnFolder):
     """What may be on a disk after a loss of power."""
-
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = pathlib.Path(scratch.name)
 
     def states(self, *calls):
         """Returns all that is left in some of 300 losses of power."""
@@ -313,22 +270,17 @@ class Disks(unittest.TestCase):
     def test_what_is_synchronised_is_certain(self):
         write = Call("write", 2, "/a", "0", b"xy")
         self.assertEqual(self.states(self.NEW, self.FOLDER_SYNC, write, self.FILE_SYNC), [{"": None, "/a": b"xy"}])
-        self.assertCountEqual(
-            self.states(self.NEW, write, self.FILE_SYNC), [{"": None}, {"": None, "/a": b"xy"}]
-        )
-        self.assertCountEqual(
-            self.states(self.NEW, self.FOLDER_SYNC, write), [{"": None, "/a": b""}, {"": None, "/a": b"xy"}]
-        )
+        whole = {"": None, "/a": b"xy"}
+        self.assertCountEqual(self.states(self.NEW, write, self.FILE_SYNC), [{"": None}, whole])
+        self.assertCountEqual(self.states(self.NEW, self.FOLDER_SYNC, write), [{"": None, "/a": b""}, whole])
 
-    def test_sectors_are_written_in_any_order(self):
+    def test_sectors_are_written_in_any_order_and_sizes_may_be_old(self):
         (self.folder / "a").write_bytes(b"o" * 1024)
         states = self.states(Call("write", 1024, "/a", "0", b"n" * 1024))
         expected = [a * 512 + b * 512 for a in (b"o", b"n") for b in (b"o", b"n")]
         self.assertCountEqual([state["/a"] for state in states], expected)
         states = self.states(Call("write", 4, "/a", "510", b"nnnn"))  # across the border of two sectors
         self.assertEqual(len(states), 4)
-
-    def test_sizes_may_be_old(self):
         (self.folder / "a").write_bytes(b"abc")
         states = self.states(Call("ftruncate", 0, "/a", "1", b""))
         self.assertCountEqual([state["/a"] for state in states], [b"abc", b"a"])
@@ -336,14 +288,11 @@ class Disks(unittest.TestCase):
     def test_entries_keep_their_order(self):
         (self.folder / "a").write_bytes(b"a")
         states = self.states(Call("rename", 0, "/a", "/b", b""), Call("mkdir", 0, "/c", "", b""))
-        self.assertCountEqual(
-            states,
-            [{"": None, "/a": b"a"}, {"": None, "/b": b"a"}, {"": None, "/b": b"a", "/c": None}],
-        )
+        renamed = {"": None, "/b": b"a"}
+        self.assertCountEqual(states, [{"": None, "/a": b"a"}, renamed, renamed | {"/c": None}])
 
     def test_calls_that_failed_change_nothing(self):
         self.assertEqual(self.states(Call("open", -1, "/a", "new", b"")), [{"": None}])
 
 
-if __name__ == "__main__":
-    unittest.main()
+unittest.main()

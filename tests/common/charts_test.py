@@ -9,16 +9,15 @@ from common import charts, results
 
 
 class Labels(unittest.TestCase):
-    def test_they_keep_their_place_where_there_is_room(self):
-        self.assertEqual(charts.spread([50, 10, 100], 12, 0, 110), [50, 10, 100])
-
-    def test_they_keep_clear_of_each_other(self):
-        self.assertEqual(charts.spread([10, 11, 12], 12, 0, 100), [10, 22, 34])
-        self.assertEqual(charts.spread([5, 5], 12, 0, 100), [5, 17])
-
-    def test_they_stay_inside(self):
-        self.assertEqual(charts.spread([95, 96, 99], 12, 0, 100), [76, 88, 100])
-        self.assertEqual(charts.spread([-8, 3], 12, 0, 100), [0, 12])
+    def test_they_keep_clear_of_each_other_inside_and_otherwise_in_their_place(self):
+        for wanted, highest, placed in (
+            ([50, 10, 100], 110, [50, 10, 100]),
+            ([10, 11, 12], 100, [10, 22, 34]),
+            ([5, 5], 100, [5, 17]),
+            ([95, 96, 99], 100, [76, 88, 100]),
+            ([-8, 3], 100, [0, 12]),
+        ):
+            self.assertEqual(charts.spread(wanted, 12, 0, highest), placed)
 
     def test_a_line_that_leaves_its_panel_is_named_at_the_edge(self):
         _, (axes,) = charts.page(1, 1, (2, 2))
@@ -27,8 +26,6 @@ class Labels(unittest.TestCase):
         (label,) = axes.texts
         self.assertEqual((label.get_text(), label.xy[1]), ("high", 1))
 
-
-class Axes(unittest.TestCase):
     def test_powers_of_ten_are_plain_text(self):
         self.assertEqual([charts.power_of_ten(value) for value in (1e-10, 1, 1e3)], ["10⁻¹⁰", "10⁰", "10³"])
 

@@ -4,12 +4,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <stdexcept>
+
+#include "common/agreement.hpp"
+#include "common/table.hpp"
 
 namespace evodevo::tools::EVODEVO_FILE {
 namespace {
-
-using ::testing::HasSubstr;
 
 constexpr Program program{"some", "the page\n"};
 
@@ -26,23 +28,16 @@ Outcome outcome(std::vector<const char*> arguments, const std::function<void(con
   return {status, testing::internal::GetCapturedStdout(), testing::internal::GetCapturedStderr()};
 }
 
-TEST(Program, RunsWithItsArguments) {
+TEST(Program, RunsWithItsArgumentsOrPrintsItsHelpOrSaysWhatFailed) {
   CommandLine seen;
-  const Outcome done = outcome({"a", "--b"}, [&](const CommandLine& line) { seen = line; });
-  EXPECT_EQ(done.status, 0);
+  EXPECT_EQ(outcome({"a", "--b"}, [&](const CommandLine& line) { seen = line; }).status, 0);
   EXPECT_EQ(seen, (CommandLine{"a", "--b"}));
-}
-
-TEST(Program, PrintsItsHelpAndRunsNothing) {
-  const Outcome done = outcome({"a", "--help"}, [](const CommandLine&) { throw std::logic_error("ran"); });
-  EXPECT_EQ(done.status, 0);
-  EXPECT_EQ(done.output, program.help);
-}
-
-TEST(Program, SaysWhatFailed) {
-  const Outcome done = outcome({}, [](const CommandLine&) { throw std::invalid_argument("no such study"); });
-  EXPECT_EQ(done.status, 2);
-  EXPECT_EQ(done.errors, "some: no such study\n");
+  const Outcome help = outcome({"a", "--help"}, [](const CommandLine&) { throw std::logic_error("ran"); });
+  EXPECT_EQ(help.status, 0);
+  EXPECT_EQ(help.output, program.help);
+  const Outcome failed = outcome({}, [](const CommandLine&) { throw std::invalid_argument("no such study"); });
+  EXPECT_EQ(failed.status, 2);
+  EXPECT_EQ(failed.errors, "some: no such study\n");
 }
 
 TEST(Program, NamesTheCommandThatRepeatsACall) {
@@ -66,6 +61,36 @@ TEST(Program, ReadsOptionsAndRefusesOthers) {
   read_options({"--runs", "3"}, options);
   EXPECT_EQ(runs, 3);
   EXPECT_THROW(read_options({"--run-time", "3"}, options), po::error);
+}
+
+TEST(Table, IsCsvWithAHeader) {
+  Table table("results", {"method", "dt (s)"});
+  table.add({"rk4", 0.00025});
+  table.add({"one, \"quoted\"", 1e-12});
+  table.add({"", std::numeric_limits<double>::quiet_NaN()});
+  EXPECT_EQ(table.csv(), "method,dt (s)\nrk4,0.00025\n\"one, \"\"quoted\"\"\",1e-12\n,\n");
+  EXPECT_EQ(table.number(0, "dt (s)"), 0.00025);
+  EXPECT_EQ(table.text(0, "method"), "rk4");
+}
+
+TEST(Table, RefusesWhatDoesNotFitItsColumnsAndPlacesWhereItCannotBe) {
+  Table table("results", {"method", "dt (s)"});
+  EXPECT_THROW(table.add({"rk4"}), std::logic_error);
+  table.add({"rk4", 1.0});
+  EXPECT_THROW(table.number(0, "dt"), std::logic_error);
+  EXPECT_THROW(write(table, "/nowhere/at/all"), std::runtime_error);
+}
+
+TEST(ShareFound, IsFromOneForTheTruthToZeroForItsOpposite) {
+  const auto share = [](const std::vector<double>& estimate, std::size_t count) {
+    return share_found(std::vector<double>{5, 1, 4, 2, 3, 0}, estimate, count);
+  };
+  EXPECT_EQ(share({5, 1, 4, 2, 3, 0}, 3), 1);
+  EXPECT_EQ(share({50, 11, 40, 12, 30, -7}, 3), 1) << "it grows with the truth";
+  EXPECT_EQ(share({0, 4, 1, 3, 2, 5}, 3), 0);
+  EXPECT_DOUBLE_EQ(share({1, 1, 1, 1, 1, 1}, 2), 2.0 / 6) << "chance, where the estimate knows nothing";
+  // the estimate finds 5; its values for 4, 3, 2 and 0 are equal, so these four compete for two places
+  EXPECT_DOUBLE_EQ(share({9, 0, 1, 1, 1, 1}, 3), (1 + 0.5 + 0.5) / 3);
 }
 
 }  // namespace

@@ -2,32 +2,19 @@
 
 import itertools
 import math
-import random
 import unittest
 
 from compare import inference
 
 
-def samples_with(u, m, n):
-    """Returns samples of m and n distinct values, such that in `u` pairs the first sample's value is the larger one."""
-    below = [min(n, max(0, u - i * n)) for i in range(m)]
-    return [count + 0.5 + i / 1000 for i, count in enumerate(below)], list(range(1, n + 1))
-
-
 class RankSumTest(unittest.TestCase):
-    def test_published_critical_values(self):
-        # two-tailed critical values at 0.05, as in the tables of the Mann-Whitney U in most textbooks
-        published = ((5, 5, 2), (6, 8, 8), (7, 9, 12), (8, 10, 17), (10, 10, 23), (15, 15, 64), (20, 20, 127))
-        for m, n, critical in published:
-            with self.subTest(m=m, n=n):
-                self.assertLessEqual(inference.rank_sum_test(*samples_with(critical, m, n)), 0.05)
-                self.assertGreater(inference.rank_sum_test(*samples_with(critical + 1, m, n)), 0.05)
-
-    def test_an_example_by_hand(self):
+    def test_few_values_without_ties_by_hand(self):
         # all 126 ways to choose 4 of 9 values are equally likely: 7 have a rank sum of at most 13, and 7 the opposite
         males, females = [19, 22, 16, 29, 24], [20, 11, 17, 12]
         self.assertAlmostEqual(inference.rank_sum_test(males, females), 14 / 126, places=14)
         self.assertEqual(inference.superiority(males, females), 17 / 20)
+        extreme = inference.rank_sum_test(range(20), range(20, 40))
+        self.assertAlmostEqual(extreme * math.comb(40, 20), 2, places=3)  # of the ways to split 40 values
 
     def test_ties_by_enumeration(self):
         a, b = [1, 2, 2, 5, 5], [0, 0, 1, 2, 2, 4]
@@ -43,10 +30,11 @@ class RankSumTest(unittest.TestCase):
         self.assertAlmostEqual(inference.rank_sum_test(a, b), expected, places=14)
 
     def test_many_values_without_ties_by_the_normal_distribution(self):
-        # for two samples of 21 values, U has mean 220.5 and variance 21 * 21 * 43 / 12; the continuity correction is
-        # 0.5
-        z = (220.5 - 140 - 0.5) / math.sqrt(21 * 21 * 43 / 12)
-        self.assertAlmostEqual(inference.rank_sum_test(*samples_with(140, 21, 21)), math.erfc(z / math.sqrt(2)), places=12)
+        # for two samples of 21 values, U has mean 220.5 and variance 21 * 21 * 43 / 12, and here it is 1 + 2
+        # + … + 16; the continuity correction is 0.5
+        z = (220.5 - 136 - 0.5) / math.sqrt(21 * 21 * 43 / 12)
+        p = inference.rank_sum_test([i - 4.5 for i in range(21)], range(21))
+        self.assertAlmostEqual(p, math.erfc(z / math.sqrt(2)), places=12)
 
     def test_the_variance_with_ties_is_that_of_all_permutations(self):
         # after the continuity correction, a distance of z standard deviations has p = erfc(z / sqrt 2)
@@ -71,25 +59,12 @@ class RankSumTest(unittest.TestCase):
 
 class Holm(unittest.TestCase):
     def test_by_hand(self):
-        adjusted = inference.holm([0.01, 0.04, 0.03, 0.005])
-        for value, expected in zip(adjusted, [0.03, 0.06, 0.06, 0.02]):
+        for value, expected in zip(inference.holm([0.01, 0.04, 0.03, 0.005]), [0.03, 0.06, 0.06, 0.02]):
             self.assertAlmostEqual(value, expected, places=14)
         self.assertEqual(inference.holm([0.9, 0.8]), [1, 1])
 
 
 class Medians(unittest.TestCase):
-    def test_of_odd_and_even_many(self):
-        self.assertEqual(inference.median([3, 1, 2]), 2)
-        self.assertEqual(inference.median([4, 1, 3, 2]), 2.5)
-        self.assertEqual(inference.median([-math.inf, -math.inf, 1]), -math.inf)
-
-    def test_resamples_have_their_medians_as_often_as_the_binomial_says(self):
-        # a resample's median is at most the k-th of 11 values if at least 6 of the 11 draws are at most that value
-        medians = inference.resampled_medians(tuple(range(1, 12)))
-        for k in range(1, 12):
-            share = sum(math.comb(11, n) * k**n * (11 - k) ** (11 - n) for n in range(6, 12)) / 11**11
-            self.assertAlmostEqual((medians <= k).mean(), share, delta=4 * math.sqrt(0.25 / len(medians)))
-
     def test_the_same_values_have_the_same_interval(self):
         values = [0.3, 0.1, 0.9, 0.4, 0.7, 0.2]
         first = inference.median_interval(values)
@@ -122,25 +97,6 @@ class Superiority(unittest.TestCase):
                 deviation = math.sqrt((bound * (1 - bound) + others) / (a * b))
                 self.assertAlmostEqual(abs(a12 - bound) / deviation, 1.959964, places=6)
 
-    def test_at_no_difference_it_agrees_with_the_rank_sum_test(self):
-        # without ties and without continuity correction, z of the rank test is (A12 - 0.5) / sqrt((2 n + 1) / (12 n^2))
-        for size in (5, 10, 20):
-            step = 1.959964 * math.sqrt((2 * size + 1) / (12 * size**2))
-            self.assertGreater(inference.superiority_interval(0.5 + 1.001 * step, size, size)[0], 0.5)
-            self.assertLess(inference.superiority_interval(0.5 + 0.999 * step, size, size)[0], 0.5)
-
-    def test_it_holds_the_truth_as_often_as_it_says(self):
-        # exponential samples have a known A12: the rate of the second sample divided by the sum of both rates
-        draw = random.Random(1)
-        samples = 2000
-        for rate, sizes in itertools.product((1, 3, 10), ((10, 10), (9, 12))):
-            truth, held = rate / (1 + rate), 0
-            for _ in range(samples):
-                a, b = ([draw.expovariate(r) for _ in range(size)] for r, size in zip((1, rate), sizes))
-                low, high = inference.superiority_interval(inference.superiority(a, b), *sizes)
-                held += low <= truth <= high
-            self.assertAlmostEqual(held / samples, 0.95, delta=0.02, msg=f"rate {rate}, {sizes}")
-
 
 class FewRuns(unittest.TestCase):
     def test_verdicts_take_as_many_runs_as_the_most_extreme_outcome_does(self):
@@ -151,5 +107,4 @@ class FewRuns(unittest.TestCase):
                 self.assertEqual(inference.holm([p] * tests)[0] < inference.SIGNIFICANT, possible, f"{tests}, {runs}")
 
 
-if __name__ == "__main__":
-    unittest.main()
+unittest.main()

@@ -5,15 +5,12 @@ import pathlib
 import tempfile
 import unittest
 
+from history_test import CHEAP, FAR, markdown, several, shown
 from matplotlib.text import Text
 
-from compare import chart, niches, report, tables
-from compare.history import Quantity, history
-from compare.runs import Variant
-from compare.standings import standings
+from compare import chart, niches, tables
+from compare.history import history
 
-FAR = Quantity("distance", "m", True)
-CHEAP = Quantity("work", "J", False)
 HEIGHT = {"name": "height", "unit": "m", "low": 0, "high": 1, "bins": 10}
 MASS = {"name": "mass", "unit": "kg", "low": 1, "high": 2, "bins": 20}
 
@@ -21,43 +18,12 @@ MASS = {"name": "mass", "unit": "kg", "low": 1, "high": 2, "bins": 20}
 def run(maps, axes=(HEIGHT, MASS), objective=FAR):
     """Returns the history of a run of five evaluations per generation, given the coverage and the QD score of each
     generation. Without `axes` it has no map."""
-    return history(
-        {
-            "best": None,
-            "map": {"axes": list(axes)} if axes else None,
-            "generations": [
-                {
-                    "evaluations": 5 * (i + 1),
-                    "best": 1,
-                    "map": {"coverage": coverage, "qd_score": qd_score} if axes else None,
-                    "diverged": 1,
-                    "invalid": 0,
-                    "artefact": 0,
-                    "passive": 0,
-                    "spring_evaluations": 10,
-                    "wall_time": 0.5,
-                }
-                for i, (coverage, qd_score) in enumerate(maps)
-            ],
-        },
-        objective,
-    )
-
-
-def several(**variants):
-    return {Variant(pathlib.Path(name)): runs for name, runs in variants.items()}
+    return history(shown([1] * len(maps), axes=axes, maps=maps), objective)
 
 
 def steady(*coverages, **more):
     """Returns runs of one generation, whose QD score is 100 times their coverage."""
     return [run([(coverage, 100 * coverage)], **more) for coverage in coverages]
-
-
-def markdown(histories, objective=FAR, against=None):
-    seeds = len(next(iter(histories.values())))
-    made = {"device": {"cpu": {}}, "evodevo": {"1": {}}}
-    setting = report.Setting("tools/compare", seeds, against or next(iter(histories)).name, made)
-    return report.markdown(histories, objective, setting)
 
 
 def rows_of(text, heading):
@@ -71,16 +37,12 @@ LOW, HIGH = [0.1 * i for i in (1, 2, 3, 4)], [0.05 * i for i in (11, 12, 14, 19)
 
 
 class Histories(unittest.TestCase):
-    def test_a_map_is_empty_before_the_first_generation(self):
+    def test_a_map_is_empty_before_the_first_generation_and_may_lack_all_or_the_qd_score(self):
         known = run([(0.25, 2.5), (0.5, 2)])
         self.assertEqual((known.coverage, known.qd_score), ([0, 0.25, 0.5], [0, 2.5, 2]))
         self.assertEqual([known.at("evaluations", cost, "coverage") for cost in (4, 5, 9, 10)], [0, 0.25, 0.25, 0.5])
-
-    def test_without_a_map_there_is_neither(self):
         known = run([(0, 0)], axes=())
         self.assertEqual((known.coverage, known.qd_score, known.axes), (None, None, None))
-
-    def test_without_a_qd_score_there_is_coverage(self):
         known = run([(0.25, None), (0.5, None)], objective=CHEAP)
         self.assertEqual((known.coverage, known.qd_score), ([0, 0.25, 0.5], None))
 
@@ -91,15 +53,10 @@ class Sharing(unittest.TestCase):
         found = niches.shared(histories, FAR, against)
         return [variant.name for variant in found.histories], found.without, found.different
 
-    def test_each_property_of_an_axis_counts(self):
+    def test_each_property_of_an_axis_and_the_order_and_number_of_axes_count(self):
         for other in ({"name": "width"}, {"unit": "cm"}, {"low": -1}, {"high": 2}, {"bins": 11}):
-            self.assertEqual(
-                self.shared("a", a=[HEIGHT, MASS], b=[HEIGHT | other, MASS], c=[HEIGHT, MASS]),
-                (["a", "c"], [], ["b"]),
-                other,
-            )
-
-    def test_the_order_and_number_of_axes_count(self):
+            found = self.shared("a", a=[HEIGHT, MASS], b=[HEIGHT | other, MASS], c=[HEIGHT, MASS])
+            self.assertEqual(found, (["a", "c"], [], ["b"]), other)
         for other in ([MASS, HEIGHT], [HEIGHT]):
             self.assertEqual(self.shared("a", a=[HEIGHT, MASS], b=other), (["a"], [], ["b"]))
 
@@ -132,19 +89,8 @@ class Reports(unittest.TestCase):
         self.assertEqual([coverage[name][0] for name in ("long", "short")], ["0.3", "0.7"])
         self.assertEqual([qd_score[name][0] for name in ("long", "short")], ["3", "11"])
 
-    def test_intervals_from_six_seeds(self):
-        text = markdown(several(few=steady(*[0.2] * 6), many=steady(*[0.4] * 6)))
-        self.assertEqual(rows_of(text, "Coverage")["many"][:3], ["0.4", "0.4 to 0.4", "1.00"])
-
-    def test_a_difference_that_the_best_does_not_show(self):
-        histories = several(few=steady(*LOW), many=steady(*HIGH))
-        by_best = standings(histories, FAR, "evaluations", 5, "few")[1]
-        by_coverage = standings(histories, niches.COVERAGE, "evaluations", 5, "few")[1]
-        self.assertEqual((by_best.a12, by_coverage.a12, by_coverage.values), (0.5, 1, HIGH))
-
     def test_those_left_out_are_named(self):
-        histories = several(a=steady(*LOW), b=steady(*HIGH), c=steady(*LOW, axes=()), d=steady(*LOW, axes=[MASS]))
-        text = markdown(histories)
+        text = markdown(several(a=steady(*LOW), b=steady(*HIGH), c=steady(*LOW, axes=()), d=steady(*LOW, axes=[MASS])))
         said = [line for line in text.splitlines() if line.startswith("Not compared")]
         self.assertEqual([line.count("`") // 2 for line in said], [1, 2])
         self.assertRegex(said[0], "no map.*`c`")
@@ -180,17 +126,13 @@ class Reports(unittest.TestCase):
         self.assertNotIn("###", section)
 
     def test_a_single_experiment_has_its_medians(self):
-        text = markdown(several(alone=steady(*LOW)))
-        self.assertEqual(rows_of(text, "Coverage"), {"alone": ["0.25", "-"]})
+        self.assertEqual(rows_of(markdown(several(alone=steady(*LOW))), "Coverage"), {"alone": ["0.25", "-"]})
 
 
 class Files(unittest.TestCase):
     def test_results_have_the_map_where_there_is_one(self):
-        histories = several(
-            a=[run([(0.25, 2.5), (0.5, 2)])],
-            b=[run([(0.25, None)], objective=CHEAP)],
-            c=[run([(0, 0)], axes=())],
-        )
+        without = [run([(0.25, None)], objective=CHEAP)]
+        histories = several(a=[run([(0.25, 2.5), (0.5, 2)])], b=without, c=[run([(0, 0)], axes=())])
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "results.csv"
             tables.write_csv(file, histories, [37])
@@ -217,7 +159,7 @@ class Charts(unittest.TestCase):
         self.assertLess(coverage.get_ylim()[1], 1)  # limits of their own
         self.assertEqual(qd_score.get_ylim()[0], -2)
 
-    def test_without_a_qd_score_there_is_one_panel(self):
+        # without a QD score there is one panel
         found = niches.shared(several(a=[run([(0.25, None)], objective=CHEAP)]), CHEAP, "a")
         (axes,) = chart.map_figure(found.histories, found.quantities).axes
         self.assertEqual(self.curves(axes), [[0.25, 0.25]])
@@ -237,5 +179,4 @@ class Charts(unittest.TestCase):
                 self.assertLess(below.y0 + 0.8 * below.height, above.y0)
 
 
-if __name__ == "__main__":
-    unittest.main()
+unittest.main()

@@ -7,26 +7,21 @@ import shutil
 import statistics
 import subprocess
 import sys
-import tempfile
 import unittest
 
+from compare import command
+from own_folder import InOwnFolder, called
 from small_experiment import small_experiment
 
 SCRIPT = pathlib.Path(__file__).parents[2] / "experiments" / "study" / "development" / "outcomes.py"
 
 
-class Outcomes(unittest.TestCase):
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = pathlib.Path(scratch.name)
-
+class Outcomes(InOwnFolder):
     def compare(self):
         files = [self.folder / "plain.toml", self.folder / "developing.toml"]
         for file in files:
             file.write_text(small_experiment(development=file.stem == "developing"))
-        command = [sys.executable, "-P", "-m", "compare", *files, "--seeds", "101..102", "--out", self.folder / "out"]
-        return subprocess.run(command, capture_output=True, text=True)
+        return called(command.main, [*files, "--seeds", "101..102", "--out", self.folder / "out"])
 
     def measure(self, *words):
         return subprocess.run([sys.executable, SCRIPT, self.folder / "out", *words], capture_output=True, text=True)
@@ -83,5 +78,4 @@ class Outcomes(unittest.TestCase):
         self.assertIn(f"{self.folder / 'out'}: has no complete runs", done.stderr)
 
 
-if __name__ == "__main__":
-    unittest.main()
+unittest.main()

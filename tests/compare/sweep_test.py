@@ -1,20 +1,14 @@
 """Tests the variants that sweeps produce, and the names of these variants."""
 
-import pathlib
 import re
-import tempfile
 import unittest
 
 from common.command_line import Failure
 from compare.runs import make_variants, overrides, parse_setting, parse_sweep
+from own_folder import InOwnFolder
 
 
-class Sweeps(unittest.TestCase):
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = pathlib.Path(scratch.name)
-
+class Sweeps(InOwnFolder):
     def file(self, name, text):
         path = self.folder / name
         path.write_text(text)
@@ -28,15 +22,8 @@ class Sweeps(unittest.TestCase):
 
     def test_all_combinations(self):
         evo_devo = self.file("evo-devo.toml", "[development]\n[[fitness]]\nwindow = 1.0\n")
-        self.assertEqual(
-            self.names([evo_devo], "development.cycle_time=0.5,1", "fitness.0.window=2,3"),
-            [
-                "evo-devo,development.cycle_time=0.5,fitness.0.window=2",
-                "evo-devo,development.cycle_time=0.5,fitness.0.window=3",
-                "evo-devo,development.cycle_time=1,fitness.0.window=2",
-                "evo-devo,development.cycle_time=1,fitness.0.window=3",
-            ],
-        )
+        names = [f"evo-devo,development.cycle_time={time},fitness.0.window={w}" for time in ("0.5", "1") for w in (2, 3)]
+        self.assertEqual(self.names([evo_devo], "development.cycle_time=0.5,1", "fitness.0.window=2,3"), names)
 
     def test_only_where_the_table_is_there(self):
         # setting a key whose table is missing would add a force or development to the experiment
@@ -67,11 +54,8 @@ class Sweeps(unittest.TestCase):
             ("\"a,]b\",'[,',c", ['"a,]b"', "'[,'", "c"]),
         ):
             self.assertEqual(parse_sweep(f"k={text}"), ("k", values))
-        file = self.file("a.toml", "[encoding]\n")
-        self.assertEqual(
-            self.names([file], "encoding.size=[2,2,2],[3,2,2]"),
-            ["a,encoding.size=[2,2,2]", "a,encoding.size=[3,2,2]"],
-        )
+        names = self.names([self.file("a.toml", "[encoding]\n")], "encoding.size=[2,2,2],[3,2,2]")
+        self.assertEqual(names, ["a,encoding.size=[2,2,2]", "a,encoding.size=[3,2,2]"])
 
     def test_a_key_is_given_once(self):
         file = self.file("a.toml", "[encoding]\n")
@@ -84,8 +68,7 @@ class Sweeps(unittest.TestCase):
                 self.variants([file], sweeps, settings)
 
     def test_names_are_folders_and_differ(self):
-        file = self.file("a.toml", "[plugins]\n")
-        names = self.names([file], "plugins.paths=x/y,x%2Fy,..")
+        names = self.names([self.file("a.toml", "[plugins]\n")], "plugins.paths=x/y,x%2Fy,..")
         self.assertEqual(len(set(names)), 3)
         for name in names:
             self.assertNotIn("/", name)
@@ -101,20 +84,18 @@ class Sweeps(unittest.TestCase):
         for setting in ("a.b", "=1"):
             with self.assertRaisesRegex(Failure, f"--set {setting}: expected KEY=VALUE"):
                 parse_setting(setting)
-        with self.assertRaisesRegex(Failure, "a value is there twice"):
-            parse_sweep("development.cycles=1,1")
-        with self.assertRaisesRegex(Failure, "say how many with --seeds"):
-            parse_sweep("experiment.seed=1,2")
-        with self.assertRaisesRegex(Failure, "say how many with --seeds"):
-            parse_setting("experiment.seed=1")
         (self.folder / "other").mkdir()
-        with self.assertRaisesRegex(Failure, "has the name a already; rename one"):
-            self.variants([self.file("a.toml", ""), self.file("other/a.toml", "")])
-        with self.assertRaisesRegex(Failure, "bad.toml: cannot be read: "):
-            self.variants([self.file("bad.toml", "[")])
-        with self.assertRaisesRegex(Failure, "none.toml: cannot be read: .*No such file"):
-            self.variants([self.folder / "none.toml"])
+        one, other = self.file("a.toml", ""), self.file("other/a.toml", "")
+        for said, call, *arguments in (
+            ("a value is there twice", parse_sweep, "development.cycles=1,1"),
+            ("say how many with --seeds", parse_sweep, "experiment.seed=1,2"),
+            ("say how many with --seeds", parse_setting, "experiment.seed=1"),
+            ("has the name a already; rename one", self.variants, [one, other]),
+            ("bad.toml: cannot be read: ", self.variants, [self.file("bad.toml", "[")]),
+            ("none.toml: cannot be read: .*No such file", self.variants, [self.folder / "none.toml"]),
+        ):
+            with self.assertRaisesRegex(Failure, said):
+                call(*arguments)
 
 
-if __name__ == "__main__":
-    unittest.main()
+unittest.main()

@@ -8,30 +8,25 @@
 
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
-#include "support/process.hpp"
+#include "support/program.hpp"
 #include "support/scratch.hpp"
 
 namespace evodevo::EVODEVO_FILE {
 namespace {
 
+using namespace testing;
 using ::testing::HasSubstr;
-using testing::small_experiment;
+using Json = nlohmann::json;
 
 class Environments : public ::testing::Test {
  protected:
   /// Runs the command for individual 4, which has a valid body.
-  static testing::Finished environments(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), {EVODEVO_PROGRAM, "environments"});
-    arguments.insert(arguments.end(), {"--individual", "4", "--set", "encoding.size=[3,2,2]", "--set",
-                                       "development.cycles=6", "--set", "development.cycle_time=0.2"});
-    return testing::run(arguments);
+  static std::string environments(const Words& words, int exit_code = 0) {
+    const Words values{"encoding.size=[3,2,2]", "development.cycles=6", "development.cycle_time=0.2"};
+    const Words command = joined({EVODEVO_PROGRAM, "environments"}, words);
+    return output_of(joined(joined(command, {"--individual", "4"}), setting(values)), exit_code);
   }
-  static nlohmann::json json(std::vector<std::string> arguments) {
-    arguments.emplace_back("--json");
-    const testing::Finished finished = environments(std::move(arguments));
-    EXPECT_EQ(finished.exit_code, 0) << finished.output;
-    return nlohmann::json::parse(finished.output);
-  }
+  static Json json(const Words& words) { return Json::parse(environments(joined(words, {"--json"}))); }
 
   std::string other(const char* name, const std::string& instead_of, const std::string& line) {
     std::string text = small_experiment;
@@ -39,12 +34,13 @@ class Environments : public ::testing::Test {
     return scratch_.write(name, text);
   }
 
-  testing::Scratch scratch_;
+  Scratch scratch_;
   std::string flat_ = scratch_.write("flat.toml", small_experiment);
+  std::string slope_ = other("slope.toml", "[scene.gravity]", "[scene.gravity]\nslope = 30");
 };
 
 TEST_F(Environments, TheSameSceneWithoutNoiseGrowsTheSameBody) {
-  const auto answer = json({flat_, flat_, "--starts", "1"})[0];
+  const Json answer = json({flat_, flat_, "--starts", "1"})[0];
   ASSERT_EQ(answer.at("pairs").size(), 1u);
   const auto& pair = answer.at("pairs")[0];
   ASSERT_EQ(pair.at("springs").size(), 6u) << "one for each cycle";
@@ -58,8 +54,7 @@ TEST_F(Environments, TheSameSceneWithoutNoiseGrowsTheSameBody) {
 }
 
 TEST_F(Environments, EveryGenomeHasItsBodiesAndDistances) {
-  const std::string slope = other("slope.toml", "[scene.gravity]", "[scene.gravity]\nslope = 30");
-  const auto answers = json({flat_, slope, flat_, "--starts", "3", "--individual", "5"});
+  const Json answers = json({flat_, slope_, flat_, "--starts", "3", "--individual", "5"});
   ASSERT_EQ(answers.size(), 2u);
   EXPECT_EQ(answers[0].at("individual"), 5);
   EXPECT_EQ(answers[1].at("individual"), 4);
@@ -74,7 +69,7 @@ TEST_F(Environments, EveryGenomeHasItsBodiesAndDistances) {
   }
   EXPECT_EQ(answer.at("scenes")[1].at("slope"), 30);
   ASSERT_EQ(answer.at("pairs").size(), 3u);
-  EXPECT_EQ(answer.at("pairs")[1].at("scenes"), nlohmann::json({0, 2}));
+  EXPECT_EQ(answer.at("pairs")[1].at("scenes"), Json({0, 2}));
   EXPECT_EQ(answer.at("pairs")[1].at("springs")[5].at("p"), 1) << "a scene differs from itself";
   EXPECT_GT(answer.at("pairs")[0].at("springs")[5].at("between"), 0) << "the slope has changed nothing";
 }
@@ -100,7 +95,7 @@ name = "laden"
 [scenario.payload]
 share = 0.5
 )");
-  const auto names = [](const nlohmann::json& answer) {
+  const auto names = [](const Json& answer) {
     std::vector<std::string> found;
     for (const auto& scene : answer.at("scenes")) found.push_back(scene.at("name"));
     return found;
@@ -123,70 +118,48 @@ share = 0.5
 }
 
 TEST_F(Environments, WhereNothingDevelopsTheBodyStaysTheSameHoweverItLies) {
-  const std::string slope = other("slope.toml", "[scene.gravity]", "[scene.gravity]\nslope = 30");
-  const auto answer = json({flat_, slope, "--starts", "1", "--set", "development.control=no-change"})[0];
-  const auto& pair = answer.at("pairs")[0];
-  EXPECT_EQ(pair.at("springs")[5].at("between"), 0);
-  EXPECT_EQ(pair.at("mass")[5].at("between"), 0);
+  const auto with = [&](const std::string& other, const std::string& control) {
+    return json({flat_, other, "--starts", "1", "--set", "development.control=" + control})[0];
+  };
+  const Json still = with(slope_, "no-change"), random = with(flat_, "random-places");
+  for (const char* kind : {"springs", "mass"}) EXPECT_EQ(still.at("pairs")[0].at(kind)[5].at("between"), 0);
+  const auto body = [](const Json& answer) { return answer.at("scenes")[0].at("starts")[0].at("body").at("springs"); };
+  EXPECT_NE(body(random), body(still)) << "bodies at random places are the ones that have grown";
 }
 
 TEST_F(Environments, TheTableNamesScenesAndCycles) {
   const std::string weak = other("weak.toml", "[scene.gravity]", "[scene.gravity]\nacceleration = 1.62");
-  const testing::Finished finished = environments({flat_, weak, "--starts", "2"});
-  EXPECT_EQ(finished.exit_code, 0) << finished.output;
-  for (const char* part :
-       {"individual 4", "flat", "weak", "after cycle  6", "springs that only one", "body lengths at birth"})
-    EXPECT_THAT(finished.output, HasSubstr(part));
-  EXPECT_THAT(finished.output, ::testing::Not(HasSubstr("after cycle  5")));
-  std::istringstream lines(finished.output);
+  const std::string table = environments({flat_, weak, "--starts", "2"});
+  EXPECT_THAT(table, naming("individual 4", "flat", "weak", "after cycle  6", "springs that only one",
+                            "body lengths at birth"));
+  EXPECT_THAT(table, ::testing::Not(HasSubstr("after cycle  5")));
+  std::istringstream lines(table);
   for (std::string line; std::getline(lines, line);)
     if (line.find("weak") != std::string::npos) {
       EXPECT_LE(line.size(), 80u) << "a row fits a page";
     }
-  const std::string all = environments({flat_, weak, "--starts", "2", "--all"}).output;
-  EXPECT_THAT(all, testing::naming("after cycle  1", "after cycle  5", "after cycle  6"));
+  EXPECT_THAT(environments({flat_, weak, "--starts", "2", "--all"}),
+              naming("after cycle  1", "after cycle  5", "after cycle  6"));
 }
 
-TEST_F(Environments, BodiesAtRandomPlacesAreTheOnesThatHaveGrown) {
-  const auto springs = [&](const std::string& control) {
-    const auto answer = json({flat_, flat_, "--starts", "1", "--set", "development.control=" + control})[0];
-    return answer.at("scenes")[0].at("starts")[0].at("body").at("springs");
-  };
-  EXPECT_NE(springs("random-places"), springs("no-change"));
-}
-
-TEST_F(Environments, OneGenomeNeedsOneMeaning) {
-  const std::string sized = other("sized.toml", "edge = 0.5", "edge = 0.6");
-  const testing::Finished finished = environments({flat_, sized});
-  EXPECT_EQ(finished.exit_code, 2);
-  EXPECT_THAT(finished.output, testing::naming("sized.toml: encoding.edge ", "0.6", "0.5"));
+TEST_F(Environments, OneGenomeNeedsOneMeaningAndADevelopment) {
+  EXPECT_THAT(environments({flat_, other("sized.toml", "edge = 0.5", "edge = 0.6")}, 2),
+              naming("sized.toml: encoding.edge ", "0.6", "0.5"));
   const std::string soft = other("soft.toml", "[development]", "[materials.bone]\nstiffness = 100\n\n[development]");
-  EXPECT_THAT(environments({flat_, soft}).output, testing::naming("soft.toml: materials.bone.stiffness ", "100"));
+  EXPECT_THAT(environments({flat_, soft}, 2), naming("soft.toml: materials.bone.stiffness ", "100"));
   const std::string ruled =
       scratch_.write("ruled.toml", small_experiment + "\n[[development.operator]]\nname = 'regulated-growth'\n");
-  for (const auto& [one, two] : {std::pair{flat_, ruled}, {ruled, flat_}}) {
-    const testing::Finished refused = environments({one, two});
-    EXPECT_EQ(refused.exit_code, 2);
-    EXPECT_THAT(refused.output, testing::naming(two, "genes", "same operators"));
-  }
+  for (const auto& [one, two] : {std::pair{flat_, ruled}, {ruled, flat_}})
+    EXPECT_THAT(environments({one, two}, 2), naming(two, "genes", "same operators"));
+  EXPECT_THAT(testing::refusal({"environments", flat_, "--set", "development.cycles=0"}),
+              HasSubstr("flat.toml: development.cycles: "));
+  EXPECT_THAT(environments({}, 2), naming("EXPERIMENT.toml", "missing"));
 }
 
 TEST_F(Environments, WarnsOfWhatElseDiffers) {
   const std::string eager = other("eager.toml", "springs = 2", "springs = 3");
-  const testing::Finished finished = environments({flat_, eager, "--starts", "1"});
-  EXPECT_EQ(finished.exit_code, 0);
-  EXPECT_THAT(finished.output, testing::naming("warning: " + eager + ": development.operator.0.springs ", "3", "2"));
-}
-
-TEST_F(Environments, WithoutDevelopmentThereIsNothingToShow) {
-  const auto finished = testing::run({EVODEVO_PROGRAM, "environments", flat_, "--set", "development.cycles=0"});
-  EXPECT_EQ(finished.exit_code, 2);
-  EXPECT_THAT(finished.output, HasSubstr("flat.toml: development.cycles: "));
-}
-
-TEST_F(Environments, BadNumbersAreRefused) {
-  EXPECT_THAT(environments({}).output, testing::naming("EXPERIMENT.toml", "missing"));
-  EXPECT_THAT(environments({flat_, "--starts", "0"}).output, testing::naming("--starts 0: ", "1 to 50"));
+  EXPECT_THAT(environments({flat_, eager, "--starts", "1"}),
+              naming("warning: " + eager + ": development.operator.0.springs ", "3", "2"));
 }
 
 }  // namespace

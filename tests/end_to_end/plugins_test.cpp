@@ -12,28 +12,29 @@
 #include "operators/loader.hpp"
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
-#include "support/process.hpp"
+#include "support/program.hpp"
 #include "support/scratch.hpp"
 
 namespace evodevo::EVODEVO_FILE {
 namespace {
 
 namespace fs = std::filesystem;
-using ::testing::AllOf;
-using testing::Finished;
+using namespace testing;
 using ::testing::HasSubstr;
 
 const fs::path plugins = EVODEVO_FAULTY_PLUGINS;
 
 class Plugins : public ::testing::Test {
  protected:
-  testing::Scratch scratch_;
-  std::string file_ = scratch_.write("small.toml", testing::small_experiment);
+  Scratch scratch_;
+  std::string file_ = scratch_.write("small.toml", small_experiment);
   std::string folder_ = (scratch_ / "run").string();
+  std::string own_ = (scratch_ / "own").string();  ///< the folder in which the user keeps plugins
   fs::path library_ = scratch_ / "own" / "plugin.evodevo.so";
+  std::string recorded_own_ = fs::path(own_).lexically_normal().string();  ///< as a record stores it
 
   void SetUp() override {
-    fs::create_directory(scratch_ / "own");
+    fs::create_directory(own_);
     become_user("one");
   }
   void TearDown() override { unsetenv("XDG_STATE_HOME"); }
@@ -45,38 +46,23 @@ class Plugins : public ::testing::Test {
   void install(const std::string& which) {
     fs::copy_file(plugins / which / "plugin.evodevo.so", library_, fs::copy_options::overwrite_existing);
   }
-  std::string own() const { return (scratch_ / "own").string(); }
-  /// The path of the same folder in the form in which a record stores it.
-  std::string recorded_own() const { return fs::path(own()).lexically_normal().string(); }
-
-  static Finished evodevo(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), EVODEVO_PROGRAM);
-    return testing::run(arguments);
+  /// Returns a command on the experiment with the mutation operator of these libraries.
+  Words using_nothing(const std::string& command, const Words& more) const {
+    const Words values{"mutation.0.name=nothing", "mutation.0.probability=1"};
+    return joined(joined({command, file_}, setting(values)), more);
   }
-  Finished run_with(const std::string& mutation, std::vector<std::string> more) const {
-    more.insert(more.begin(),
-                {"run", file_, "--set", "mutation.0.name=" + mutation, "--set", "mutation.0.probability=1"});
-    if (std::find(more.begin(), more.end(), "--out") == more.end()) more.insert(more.end(), {"--out", folder_});
-    return evodevo(more);
+  Words run_words(const Words& more = {}) const {
+    return using_nothing("run", joined({"--out", folder_, "--plugin-path", own_}, more));
   }
 };
 
-TEST_F(Plugins, AreFoundByOptionVariableAndExperiment) {
+TEST_F(Plugins, AreFoundByTheExperimentsPathsThenTheOptionsThenTheVariable) {
   install("sound");
-  EXPECT_EQ(evodevo({"check", file_, "--set", "mutation.0.name=nothing"}).exit_code, 2);
-  EXPECT_EQ(evodevo({"check", file_, "--set", "mutation.0.name=nothing", "--plugin-path", own()}).exit_code, 0);
-  EXPECT_EQ(evodevo({"check", file_, "--set", "mutation.0.name=nothing", "--set", "plugins.paths=['own']"}).exit_code,
-            0);
-  EXPECT_THAT(evodevo({"operators", "--plugin-path", own()}).output, HasSubstr("nothing"));
-  EXPECT_THAT(evodevo({"describe", "nothing", "--plugin-path", own()}).output, HasSubstr("from " + library_.string()));
-  setenv("EVODEVO_PLUGIN_PATH", own().c_str(), 1);
-  EXPECT_EQ(evodevo({"check", file_, "--set", "mutation.0.name=nothing"}).exit_code, 0);
-  unsetenv("EVODEVO_PLUGIN_PATH");
+  refusal(using_nothing("check", {}));
+  said(using_nothing("check", {"--set", "plugins.paths=['own']"}));
+  EXPECT_THAT(said({"describe", "nothing", "--plugin-path", own_}), HasSubstr("from " + library_.string()));
   EXPECT_THAT(evodevo({"check", file_, "--plugin-path", "/no/such"}).output,
-              AllOf(HasSubstr("--plugin-path /no/such: "), HasSubstr("build the plugin")));
-}
-
-TEST_F(Plugins, TheExperimentsPathsComeBeforeTheOptionsAndThoseBeforeTheVariables) {
+              naming("--plugin-path /no/such: ", "build the plugin"));
   const std::string older = (plugins / "sound").string(), newer = (plugins / "newer").string();
   const auto version = [&](const std::string& experiment, const std::string& option) {
     const Override name{"mutation.0.name", "nothing", ""}, paths{"plugins.paths", "[" + experiment + "]", ""};
@@ -91,9 +77,9 @@ TEST_F(Plugins, TheExperimentsPathsComeBeforeTheOptionsAndThoseBeforeTheVariable
   unsetenv("EVODEVO_PLUGIN_PATH");
 }
 
-TEST_F(Plugins, TheRecordKeepsFileVersionAndHash) {
+TEST_F(Plugins, ARecordKeepsFileVersionAndHashOutlivesTheFolderAndLoadsNoLibraryBesideIt) {
   install("sound");
-  ASSERT_EQ(run_with("nothing", {"--plugin-path", own()}).exit_code, 0);
+  said(run_words());
   const Provenance provenance = Archive::read(folder_).provenances().front();
   EXPECT_EQ(provenance.program, file_hash(EVODEVO_PROGRAM));
   for (const OperatorUse& use : provenance.operators) {
@@ -102,217 +88,137 @@ TEST_F(Plugins, TheRecordKeepsFileVersionAndHash) {
     EXPECT_EQ(use.file, library_);
     EXPECT_EQ(use.version, "1.0.0");
   }
-  EXPECT_EQ(evodevo({"resume", folder_}).exit_code, 0) << "the record knows the folder";
-}
+  said({"resume", folder_});  // the record knows the folder
 
-TEST_F(Plugins, TheSameCommandGoesOnWithThem) {
-  install("sound");
-  const std::vector<std::string> command{"--plugin-path", own(), "--set",    "experiment.evaluations=1000000",
-                                         "--until",       "1s",  "--resume", "--no-report"};
-  for (int i = 0; i < 2; ++i) {
-    const Finished finished = run_with("nothing", command);
-    EXPECT_EQ(finished.exit_code, 130) << finished.output;
+  const std::string moved = (scratch_ / "moved").string();
+  fs::rename(own_, moved);
+  EXPECT_THAT(refusal({"life", folder_}), naming("mutation.0.name = \"nothing\"", recorded_own_, "--plugin-path"));
+  said({"life", folder_, "--plugin-path", moved});
+  fs::rename(moved, own_);
+
+  fs::copy(own_, folder_ + "/own");
+  {
+    Archive archive = Archive::annotate(folder_);
+    std::string experiment = archive.record("experiment");
+    const std::string recorded = "'" + recorded_own_ + "'";
+    ASSERT_NE(experiment.find(recorded), std::string::npos) << experiment;
+    archive.set_record("experiment", experiment.replace(experiment.find(recorded), recorded.size(), "'own'"));
   }
+  for (const std::string& here : {own_, folder_})
+    EXPECT_THAT(output_of({"sh", "-c", "cd '" + here + "' && exec " EVODEVO_PROGRAM " life '" + folder_ + "'"}, 2),
+                naming("mutation.0.name = \"nothing\"", "own ", "relative", "--plugin-path"));
 }
 
-TEST_F(Plugins, ResumeRefusesAnotherVersionUnlessTold) {
+TEST_F(Plugins, TheSameCommandGoesOnWithThemButNotWithAnotherVersionUnlessTold) {
   install("sound");
-  const std::vector<std::string> endless{"--plugin-path", own(), "--set", "experiment.evaluations=1000000",
-                                         "--until",       "1s"};
-  ASSERT_EQ(run_with("nothing", endless).exit_code, 130) << "a run that is complete is not continued";
+  const Words endless = run_words({"--set", "experiment.evaluations=1000000", "--until", "1s", "--resume"});
+  for (int i = 0; i < 2; ++i) output_of(program(endless), 130);
   install("newer");
   const std::string now = library_.lexically_normal().string();
-  const Finished refused = evodevo({"resume", folder_});
-  EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_THAT(refused.output,
-              AllOf(HasSubstr(folder_ + ": "), HasSubstr("mutation operator \"nothing\" 1.0.0"), HasSubstr(now),
-                    HasSubstr("2.0.0"), HasSubstr(library_.string()), HasSubstr("--allow-other-versions")));
-  const Finished allowed = evodevo({"resume", folder_, "--allow-other-versions", "--until", "1s"});
-  EXPECT_EQ(allowed.exit_code, 130) << allowed.output;
-  EXPECT_THAT(allowed.output,
-              testing::naming("warning: ", "mutation operator \"nothing\" 1.0.0", "version 2.0.0", now));
+  EXPECT_THAT(refusal({"resume", folder_}), naming(folder_ + ": ", "mutation operator \"nothing\" 1.0.0", now, "2.0.0",
+                                                   library_.string(), "--allow-other-versions"));
+  const Words allowed = program({"resume", folder_, "--allow-other-versions", "--until", "1s"});
+  EXPECT_THAT(output_of(allowed, 130),
+              naming("warning: ", "mutation operator \"nothing\" 1.0.0", "version 2.0.0", now));
 }
 
 TEST_F(Plugins, AnUnusableLibraryStopsNoRunThatDoesNotUseIt) {
   install("crash");
-  const Finished finished =
-      evodevo({"run", file_, "--out", folder_, "--plugin-path", own(), "--set", "experiment.evaluations=6"});
-  EXPECT_EQ(finished.exit_code, 0) << finished.output;
-  EXPECT_THAT(finished.output, testing::naming("warning: ", library_.string() + ": ", "crashes"));
-  const Finished failed = evodevo({"operators", "--failed", "--plugin-path", own()});
-  EXPECT_EQ(failed.exit_code, 0);
-  EXPECT_THAT(failed.output,
-              testing::at_place(library_.string() + ": ", "crashes", "Segmentation fault", "static objects", "remove"));
+  EXPECT_THAT(said({"run", file_, "--out", folder_, "--plugin-path", own_, "--set", "experiment.evaluations=6"}),
+              naming("warning: ", library_.string() + ": ", "crashes"));
+  EXPECT_THAT(said({"operators", "--failed", "--plugin-path", own_}),
+              at_place(library_.string() + ": ", "crashes", "Segmentation fault"));
   EXPECT_EQ(evodevo({"operators", "--failed"}).output, "");
-}
-
-TEST_F(Plugins, OfTwoLibrariesWithOneNameTheFirstIsUsedAndTheOtherNamed) {
-  install("taken_name");
-  const Finished finished = run_with("reset-weight", {"--plugin-path", own()});
-  EXPECT_EQ(finished.exit_code, 0) << finished.output;
-  EXPECT_THAT(finished.output,
-              testing::naming("warning: ", (builtin_plugin_folder() / "reset-weight.evodevo.so").string() + ": ",
-                              "mutation operator \"reset-weight\"", library_.string(), "rename", "plugin path"));
-  const auto uses = Archive::read(folder_).provenances().front().operators;
-  const auto mutation = std::find_if(uses.begin(), uses.end(), [](const auto& use) { return use.kind == "mutation"; });
-  ASSERT_NE(mutation, uses.end());
-  EXPECT_EQ(mutation->file, library_);
+  EXPECT_THAT(refusal(using_nothing("check", {"--plugin-path", own_})),
+              naming("mutation.0.name = \"nothing\"", library_.string() + ": ", "crashes"));
 }
 
 TEST_F(Plugins, TextsOfOperatorsReachNoTerminalAsTheyAre) {
-  const auto expect_clean = [](const std::string& output) {
+  const auto clean = [](const std::string& output) {
     std::istringstream lines(output);
     for (std::string line; std::getline(lines, line);) EXPECT_EQ(line, printable(line, 5000));
+    return output;
   };
   install("controls_thrown");
-  const Finished thrown = run_with("nothing", {"--plugin-path", own()});
-  EXPECT_EQ(thrown.exit_code, 1);
-  EXPECT_THAT(thrown.output, HasSubstr(": \\x1b[31mnothing\\nto mutate\\xff!!!!"));
-  EXPECT_THAT(thrown.output, HasSubstr("...; correct the operator"));
-  expect_clean(thrown.output);
+  EXPECT_THAT(clean(output_of(program(run_words()), 1)),
+              naming(": \\x1b[31mnothing\\nto mutate\\xff!!!!", "...; correct the operator"));
   install("controls_in_parameter");
-  const Finished described = evodevo({"describe", "nothing", "--plugin-path", own()});
-  EXPECT_THAT(described.output, HasSubstr("  genes\\x1b[31m = 1\n"));
-  EXPECT_THAT(described.output, HasSubstr("      Genes\\nthat change.\\xff\n"));
-  expect_clean(described.output);
-  for (const char* form : {"--json", "--markdown"}) {
-    const Finished listed = evodevo({"operators", form, "--plugin-path", own()});
-    EXPECT_EQ(listed.exit_code, 0) << listed.output;
-    expect_clean(listed.output);
-  }
+  EXPECT_THAT(clean(evodevo({"describe", "nothing", "--plugin-path", own_}).output),
+              naming("  genes\\x1b[31m = 1\n", "      Genes\\nthat change.\\xff\n"));
+  for (const char* form : {"--json", "--markdown"}) clean(said({"operators", form, "--plugin-path", own_}));
   install("controls_in_objective");
-  std::string text = testing::small_experiment;  // whose second fitness has parameters that "way" does not have
+  std::string text = small_experiment;  // whose second fitness has parameters that "way" does not have
   const std::size_t second = text.rfind("[[fitness]]");
   text.replace(second, text.find("\n[", second) - second, "[[fitness]]\nname = \"way\"\n");
-  const Finished refused = evodevo({"check", scratch_.write("way.toml", text), "--plugin-path", own()});
-  EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_THAT(refused.output, testing::naming("fitness.1.name = \"way\": ", "\"way\\x1b[31m\"", "control characters"));
-  expect_clean(refused.output);
+  EXPECT_THAT(clean(refusal({"check", scratch_.write("way.toml", text), "--plugin-path", own_})),
+              naming("fitness.1.name = \"way\": ", "\"way\\x1b[31m\"", "control characters"));
 }
 
-TEST_F(Plugins, AnOperatorThatErrsIsNamedWithItsFile) {
+TEST_F(Plugins, AnOperatorThatErrsOrCrashesIsNamedWithItsFile) {
   const std::string place = "mutation operator \"nothing\" of " + library_.string() + ", individual 6, seed 7: ";
-  install("throws");
-  const Finished thrown = run_with("nothing", {"--plugin-path", own()});
-  EXPECT_EQ(thrown.exit_code, 1);
-  EXPECT_THAT(thrown.output, testing::naming(place + "nothing to mutate", "correct the operator", "new run"));
-  install("nan");
-  const Finished poisoned = run_with("nothing", {"--plugin-path", own(), "--out", folder_ + "2"});
-  EXPECT_EQ(poisoned.exit_code, 1);
-  EXPECT_THAT(poisoned.output, testing::naming(place, "gene 0 = not a number", "correct the operator", "new run"));
+  struct Fault {
+    std::string library, reason, remedy;
+  };
+  for (const auto& [library, reason, remedy] :
+       {Fault{"throws", "nothing to mutate", "new run"}, Fault{"nan", "gene 0 = not a number", "new run"},
+        Fault{"crash_in_use", "crashed: Segmentation fault",
+              "`evodevo conform " + library_.string() + " --experiment "},
+        Fault{"reads_beyond", "crashed: Aborted", "conform"}}) {
+    SCOPED_TRACE(library);
+    fs::remove_all(folder_);
+    install(library);
+    const Finished finished = evodevo(run_words());
+    EXPECT_TRUE(remedy == "new run" ? finished.exit_code == 1 : finished.exit_code != 0);
+    EXPECT_THAT(finished.output, naming(place, reason, remedy));
+  }
 }
 
-TEST_F(Plugins, AnOperatorThatCrashesIsNamedWithItsFile) {
-  install("crash_in_use");
-  const Finished crashed = run_with("nothing", {"--plugin-path", own()});
-  EXPECT_NE(crashed.exit_code, 0);
-  EXPECT_THAT(crashed.output, testing::naming("evodevo: mutation operator \"nothing\" of " + library_.string() +
-                                                  ", individual 6, seed 7: crashed: Segmentation fault",
-                                              "`evodevo conform " + library_.string() + " --experiment "));
-}
-
-TEST_F(Plugins, AnOperatorThatReadsBeyondTheGenesIsNamedWithItsFile) {
-  install("reads_beyond");
-  const Finished stopped = run_with("nothing", {"--plugin-path", own()});
-  EXPECT_NE(stopped.exit_code, 0);
-  EXPECT_THAT(stopped.output,
-              testing::naming(library_.string() + ", individual 6, seed 7: crashed: Aborted", "conform"));
-}
-
-TEST_F(Plugins, ARunOutlivesTheFolderOfItsOperators) {
+TEST_F(Plugins, FoldersThatTheUserHasRunWithAreRememberedAndNothingIsLoadedFromAnothers) {
   install("sound");
-  ASSERT_EQ(run_with("nothing", {"--plugin-path", own()}).exit_code, 0);
-  const std::string moved = (scratch_ / "moved").string();
-  std::filesystem::rename(own(), moved);
-  const Finished missed = evodevo({"life", folder_});
-  EXPECT_EQ(missed.exit_code, 2);
-  EXPECT_THAT(missed.output, testing::naming("mutation.0.name = \"nothing\"", recorded_own(), "--plugin-path"));
-  const Finished found = evodevo({"life", folder_, "--plugin-path", moved});
-  EXPECT_EQ(found.exit_code, 0) << found.output;
-}
-
-/// Returns all commands that load the plugins named in a record.
-std::vector<std::vector<std::string>> readers_of(const std::string& folder, const std::string& file) {
-  return {{"resume", folder},
-          {"life", folder},
-          {"body", folder},
-          {"verify", folder},
-          {"report", folder, "--best", "0", "--out", folder + ".html"},
-          {"film", folder, "--out", folder + ".png"},
-          {"environments", file, "--run", folder, "--starts", "1"}};
-}
-
-TEST_F(Plugins, FoldersThatTheUserHasRunWithAreRemembered) {
-  install("sound");
-  for (const char* run : {"1", "2"})
-    ASSERT_EQ(run_with("nothing", {"--set", "plugins.paths=['own']", "--out", folder_ + run}).exit_code, 0);
+  const Words by_path{"--set", "plugins.paths=['own']", "--out"};
+  for (const char* run : {"1", "2"}) said(using_nothing("run", joined(by_path, {folder_ + run})));
   std::ifstream memory(scratch_ / "one" / "evodevo" / "plugin-folders");
   const std::string lines{std::istreambuf_iterator<char>(memory), {}};
-  EXPECT_EQ(lines, fs::canonical(own()).string() + "\n") << "once";
-  EXPECT_EQ(evodevo({"resume", folder_ + "1"}).exit_code, 0);
-  EXPECT_EQ(evodevo({"life", folder_ + "2"}).exit_code, 0);
-}
+  EXPECT_EQ(lines, fs::canonical(own_).string() + "\n") << "once";
+  said({"resume", folder_ + "1"});
+  said({"life", folder_ + "2"});
 
-TEST_F(Plugins, ARecordOfAnotherLoadsNothingThatTheUserHasNotNamed) {
-  install("sound");
-  ASSERT_EQ(run_with("nothing", {"--set", "plugins.paths=['own']"}).exit_code, 0);
   become_user("another");
-  for (const std::vector<std::string>& command : readers_of(folder_, file_)) {
+  const std::string run = folder_ + "1";
+  const std::vector<Words> readers = {{"resume", run},
+                                      {"life", run},
+                                      {"body", run},
+                                      {"verify", run},
+                                      {"report", run, "--best", "0", "--out", run + ".html"},
+                                      {"film", run, "--out", run + ".png"},
+                                      {"environments", file_, "--run", run, "--starts", "1"}};
+  for (const Words& command : readers) {
     const Finished refused = evodevo(command);
     if (refused.output.find("evodevo_viewer") != std::string::npos) continue;  // the viewer is not built
     EXPECT_EQ(refused.exit_code, 2) << command.front();
-    EXPECT_THAT(refused.output, HasSubstr("mutation.0.name = \"nothing\"")) << command.front();
-    EXPECT_THAT(refused.output, HasSubstr("--plugin-path " + recorded_own())) << command.front();
+    EXPECT_THAT(refused.output, naming("mutation.0.name = \"nothing\"", "--plugin-path " + recorded_own_));
   }
-  EXPECT_EQ(evodevo({"show", folder_, "--json"}).exit_code, 0) << "numbers are printed without operators";
-  EXPECT_EQ(evodevo({"life", folder_, "--plugin-path", own()}).exit_code, 0);
-  setenv("EVODEVO_PLUGIN_PATH", own().c_str(), 1);
-  EXPECT_EQ(evodevo({"life", folder_}).exit_code, 0);
+  said({"show", run, "--json"});  // numbers are printed without operators
+  said({"life", run, "--plugin-path", own_});
+  setenv("EVODEVO_PLUGIN_PATH", own_.c_str(), 1);
+  said({"life", run});
   unsetenv("EVODEVO_PLUGIN_PATH");
-  EXPECT_EQ(evodevo({"life", folder_}).exit_code, 2) << "looking at a run is not running it";
-}
-
-TEST_F(Plugins, ALibraryBesideARecordIsNotLoaded) {
-  install("sound");
-  ASSERT_EQ(run_with("nothing", {"--plugin-path", own()}).exit_code, 0);
-  fs::copy(own(), folder_ + "/own");
-  {
-    Archive archive = Archive::annotate(folder_);
-    std::string experiment = archive.record("experiment");
-    const std::string recorded = "'" + recorded_own() + "'";
-    ASSERT_NE(experiment.find(recorded), std::string::npos) << experiment;
-    archive.set_record("experiment", experiment.replace(experiment.find(recorded), recorded.size(), "'own'"));
-  }
-  for (const std::string& here : {own(), folder_}) {
-    const Finished there =
-        testing::run({"sh", "-c", "cd '" + here + "' && exec " EVODEVO_PROGRAM " life '" + folder_ + "'"});
-    EXPECT_EQ(there.exit_code, 2);
-    EXPECT_THAT(there.output, testing::naming("mutation.0.name = \"nothing\"", "own ", "relative", "--plugin-path"));
-  }
+  refusal({"life", run});  // looking at a run is not running it
 }
 
 TEST_F(Plugins, WithoutAHomeNothingIsRememberedOrWritten) {
   install("sound");
   const fs::path here = scratch_ / "here";
   fs::create_directory(here);
-  for (const char* homes : {"-u HOME -u XDG_STATE_HOME", "HOME= XDG_STATE_HOME=", "HOME=here XDG_STATE_HOME=here"}) {
-    const Finished finished =
-        testing::run({"sh", "-c",
-                      "cd '" + here.string() + "' && exec env " + homes + " " EVODEVO_PROGRAM " run '" + file_ +
-                          "' --set mutation.0.name=nothing --plugin-path '" + own() + "' --out '" + folder_ + "'"});
-    EXPECT_EQ(finished.exit_code, 0) << finished.output;
-    EXPECT_THAT(finished.output, testing::naming("warning: ", "HOME", "XDG_STATE_HOME", "--plugin-path"));
-    EXPECT_TRUE(fs::is_empty(here)) << homes;
+  for (const std::string homes :
+       {"-u HOME -u XDG_STATE_HOME -u XDG_CACHE_HOME",
+        "HOME= XDG_STATE_HOME= XDG_CACHE_HOME=", "HOME=here XDG_STATE_HOME=here XDG_CACHE_HOME=here"}) {
     fs::remove_all(folder_);
+    const Words inside{"sh", "-c", "cd '" + here.string() + "' && exec env " + homes + " \"$@\"", "sh"};
+    EXPECT_THAT(output_of(joined(inside, program(run_words()))),
+                naming("warning: ", "HOME", "XDG_STATE_HOME", "--plugin-path"));
+    EXPECT_TRUE(fs::is_empty(here)) << homes;
   }
-}
-
-TEST_F(Plugins, AnOperatorOfAnUnusableLibraryIsMissedWithTheReason) {
-  install("epoch");
-  const Finished finished = run_with("nothing", {"--plugin-path", own()});
-  EXPECT_EQ(finished.exit_code, 2);
-  EXPECT_THAT(finished.output, testing::naming("mutation.0.name = \"nothing\"", library_.string() + ": ", "ABI epoch",
-                                               "99", std::to_string(plugin_epoch)));
 }
 
 }  // namespace

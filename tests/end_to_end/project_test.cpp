@@ -8,28 +8,27 @@
 #include <sstream>
 
 #include "support/messages.hpp"
-#include "support/process.hpp"
+#include "support/program.hpp"
 #include "support/scratch.hpp"
 
 namespace evodevo::EVODEVO_FILE {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::Finished;
+using namespace testing;
 using ::testing::IsEmpty;
 using ::testing::UnorderedElementsAre;
-using Words = std::vector<std::string>;
 
 class NewProject : public ::testing::Test {
  protected:
-  testing::Scratch scratch_;
+  Scratch scratch_;
 
   /// Calls `evodevo new` in the scratch folder.
-  Finished create(const Words& words) const {
-    Words command = {"sh", "-c", "cd \"$1\" && shift && exec \"$@\"", "sh", (scratch_ / "").string(), EVODEVO_PROGRAM,
-                     "new"};
-    command.insert(command.end(), words.begin(), words.end());
-    return testing::run(command);
+  std::string create(const Words& words, int exit_code = 0) const {
+    return output_of(joined({"sh", "-c", "cd \"$1\" && shift && exec \"$@\"", "sh", (scratch_ / "").string(),
+                             EVODEVO_PROGRAM, "new"},
+                            words),
+                     exit_code);
   }
   std::set<std::string> files(const fs::path& folder) const {
     std::set<std::string> names;
@@ -37,9 +36,8 @@ class NewProject : public ::testing::Test {
     return names;
   }
   std::string content(const fs::path& file) const {
-    std::ostringstream text;
-    text << std::ifstream(scratch_ / file).rdbuf();
-    return text.str();
+    std::ifstream stream(scratch_ / file);
+    return {std::istreambuf_iterator<char>(stream), {}};
   }
 };
 
@@ -53,7 +51,7 @@ Words names_in(const toml::node_view<const toml::node> tables) {
 TEST_F(NewProject, ForOneOperatorOfEachKindHasOneSource) {
   for (const std::string kind : {"encoding", "mutation", "crossover", "devo", "fitness", "selection"}) {
     const std::string name = "lab." + kind;
-    ASSERT_EQ(create({kind, name}).exit_code, 0);
+    create({kind, name});
     EXPECT_THAT(files(name), UnorderedElementsAre("CMakeLists.txt", "README.md", "experiment.toml", kind + ".cpp"));
     for (const std::string& file : files(name))
       EXPECT_THAT(content(fs::path(name) / file), ::testing::Not(::testing::ContainsRegex("@[A-Za-z]"))) << file;
@@ -62,10 +60,8 @@ TEST_F(NewProject, ForOneOperatorOfEachKindHasOneSource) {
 }
 
 TEST_F(NewProject, WithSeveralOperatorsUsesAllInOneExperiment) {
-  const Finished created =
-      create({"devo", "lab.growth", "fitness", "lab.height", "devo", "other.late-growth", "mutation", "lab.drift",
-              "fitness", "width", "encoding", "lab.cloud", "crossover", "lab.mix", "selection", "lab.best"});
-  ASSERT_EQ(created.exit_code, 0) << created.output;
+  create({"devo", "lab.growth", "fitness", "lab.height", "devo", "other.late-growth", "mutation", "lab.drift",
+          "fitness", "width", "encoding", "lab.cloud", "crossover", "lab.mix", "selection", "lab.best"});
   EXPECT_THAT(files(""), UnorderedElementsAre("lab.growth"));
   EXPECT_THAT(files("lab.growth"),
               UnorderedElementsAre("CMakeLists.txt", "README.md", "experiment.toml", "growth.cpp", "height.cpp",
@@ -82,31 +78,23 @@ TEST_F(NewProject, WithSeveralOperatorsUsesAllInOneExperiment) {
               ::testing::HasSubstr("`lab.mix` (crossover) and `lab.best` (selection)"));
 }
 
-TEST_F(NewProject, NamesWhatCannotBeInOneProject) {
+TEST_F(NewProject, NamesWhatCannotBeInOneProjectAndTouchesNoFolderThatExists) {
   const auto refused = [&](const Words& words, const auto& message) {
-    const Finished created = create(words);
-    EXPECT_EQ(created.exit_code, 2);
-    EXPECT_THAT(created.output, message);
+    EXPECT_THAT(create(words, 2), message);
     EXPECT_THAT(files(""), IsEmpty()) << "nothing is written";
   };
   refused({"encoding", "lab.a", "devo", "lab.b", "encoding", "lab.c"},
-          testing::at_place("evodevo: new encoding lab.c: ", "lab.a", "create lab.c in a project of its own"));
-  refused({"selection", "a", "selection", "b"},
-          testing::at_place("evodevo: new selection b: ", "a project of its own"));
-  refused({"devo", "lab.a", "fitness", "lab.a"}, testing::at_place("evodevo: new fitness lab.a: ", "another name"));
+          at_place("evodevo: new encoding lab.c: ", "lab.a", "create lab.c in a project of its own"));
+  refused({"selection", "a", "selection", "b"}, at_place("evodevo: new selection b: ", "a project of its own"));
+  refused({"devo", "lab.a", "fitness", "lab.a"}, at_place("evodevo: new fitness lab.a: ", "another name"));
   refused({"devo", "lab.a-b", "devo", "other.a-b"},
-          testing::at_place("evodevo: new devo other.a-b: ", "a_b.cpp", "AB", "lab.a-b", "give a name"));
-  refused({"devo", "lab.a", "fitness"}, testing::at_place("evodevo: new fitness: ", "give a kind and a name"));
-  refused({"devo", "lab.a", "fitnes", "b"}, testing::at_place("evodevo: new fitnes: ", "\"fitness\""));
-  refused({"devo", "lab.a", "fitness", "B"}, testing::at_place("evodevo: new B: ", "my-lab.growth"));
-  refused({"devo"}, testing::naming("NAME is missing", "usage: evodevo new KIND NAME"));
-}
-
-TEST_F(NewProject, DoesNotTouchAFolderThatExists) {
+          at_place("evodevo: new devo other.a-b: ", "a_b.cpp", "AB", "lab.a-b", "give a name"));
+  refused({"devo", "lab.a", "fitness"}, at_place("evodevo: new fitness: ", "give a kind and a name"));
+  refused({"devo", "lab.a", "fitnes", "b"}, at_place("evodevo: new fitnes: ", "\"fitness\""));
+  refused({"devo", "lab.a", "fitness", "B"}, at_place("evodevo: new B: ", "my-lab.growth"));
+  refused({"devo"}, naming("NAME is missing", "usage: evodevo new KIND NAME"));
   fs::create_directory(scratch_ / "lab.a");
-  const Finished created = create({"devo", "lab.a", "fitness", "lab.b"});
-  EXPECT_EQ(created.exit_code, 2);
-  EXPECT_THAT(created.output, testing::at_place("evodevo: lab.a: ", "give another name"));
+  EXPECT_THAT(create({"devo", "lab.a", "fitness", "lab.b"}, 2), at_place("evodevo: lab.a: ", "give another name"));
   EXPECT_THAT(files("lab.a"), IsEmpty());
 }
 

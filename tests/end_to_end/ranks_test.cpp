@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
-#include <map>
 #include <set>
 #include <sstream>
 
@@ -15,16 +14,14 @@
 #include "support/experiments.hpp"
 #include "support/islands.hpp"
 #include "support/messages.hpp"
-#include "support/process.hpp"
+#include "support/program.hpp"
 #include "support/scratch.hpp"
 
 namespace evodevo::EVODEVO_FILE {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::Finished;
-using testing::Process;
-using Words = std::vector<std::string>;
+using namespace testing;
 
 class Ranks : public ::testing::Test {
  protected:
@@ -37,92 +34,75 @@ class Ranks : public ::testing::Test {
   }
 
   /// Returns the command that starts `count` processes of another command.
-  static Words started(int count, Words command) {
-    const Words launcher{EVODEVO_MPIRUN, "--oversubscribe", "--bind-to", "none", "-n", std::to_string(count)};
-    command.insert(command.begin(), launcher.begin(), launcher.end());
-    return command;
+  static Words started(int count, const Words& command) {
+    return joined({EVODEVO_MPIRUN, "--oversubscribe", "--bind-to", "none", "-n", std::to_string(count)}, command);
+  }
+  /// Returns the command that starts one process of each of two commands.
+  static Words started(const Words& first, const Words& second) {
+    return joined(joined(started(1, first), {":", "-n", "1"}), second);
   }
   Words run_command(const std::string& folder, const Words& settings = {}) const {
-    Words command{EVODEVO_PROGRAM, "run", file_, "--device", "cpu", "--out", (scratch_ / folder).string()};
-    for (const std::string& setting : settings) command.insert(command.end(), {"--set", setting});
-    return command;
+    const Words words{"run", file_, "--device", "cpu", "--out", (scratch_ / folder).string()};
+    return joined(program(words), setting(settings));
   }
-  Words resume_command(const std::string& folder) const {
-    return {EVODEVO_PROGRAM, "resume", (scratch_ / folder).string()};
-  }
+  Words resume_command(const std::string& folder) const { return program({"resume", (scratch_ / folder).string()}); }
   void expect_equal(const std::string& a, const std::string& b) const {
-    testing::expect_same_islands(scratch_ / a, scratch_ / b);
+    expect_same_islands(scratch_ / a, scratch_ / b);
   }
-  static void expect_success(const Words& command) {
+  template <class... Parts>
+  static void expect_refused(const Words& command, const Parts&... named) {
     const Finished finished = testing::run(command);
-    ASSERT_EQ(finished.exit_code, 0) << finished.output;
+    EXPECT_NE(finished.exit_code, 0);
+    EXPECT_THAT(finished.output, naming(named...));
   }
+  void expect_nothing_written() const { EXPECT_FALSE(fs::exists(scratch_ / "run")); }
 
-  testing::Scratch scratch_;
-  std::string file_ = scratch_.write("small.toml", testing::small_experiment);
+  Scratch scratch_;
+  std::string file_ = scratch_.write("small.toml", small_experiment);
 };
 
-TEST_F(Ranks, MakeTheSameRunAsOneProcess) {
-  expect_success(run_command("alone"));
+TEST_F(Ranks, MakeTheSameRunAsOneProcessAndSayWhatEachOfThemHasDone) {
+  output_of(run_command("alone"));
+  std::string output;
   for (const int count : {1, 2, 4}) {
     const std::string folder = std::to_string(count);
-    expect_success(started(count, run_command(folder)));
+    output = output_of(started(count, run_command(folder)));
     expect_equal("alone", folder);
   }
-}
-
-TEST_F(Ranks, OfWhichMostHaveNothingToDoMakeTheSameRun) {
-  const Words tiny{"experiment.population=3", "experiment.evaluations=9"};
-  expect_success(run_command("alone", tiny));
-  expect_success(started(16, run_command("ranks", tiny)));
-  expect_equal("alone", "ranks");
-}
-
-/// Returns the operators of an experiment.
-std::set<std::string> operators_of(const Experiment& experiment) {
-  std::istringstream lines(experiment.resolved);
-  std::set<std::string> names;
-  for (std::string line; std::getline(lines, line);)
-    if (line.starts_with("name = ")) names.insert(line);
-  return names;
+  EXPECT_THAT(output, naming("rank 0 on ", "rank 1 on ", "rank 2 on "));
 }
 
 TEST_F(Ranks, MakeTheSameRunWithEachOperatorOfAnExperiment) {
-  std::map<std::string, std::set<std::string>> experiments;  // of each file
+  std::set<fs::path> experiments;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(EVODEVO_EXPERIMENTS))
-    if (const fs::path& file = entry.path(); file.extension() == ".toml")
-      experiments[file] = operators_of(read_experiment({file, {}}));
+    if (entry.path().extension() == ".toml") experiments.insert(entry.path());
   int count = 0;
-  std::set<std::string> tried;
-  const auto is_tried = [&](const std::string& name) { return tried.contains(name); };
-  for (const auto& [file, operators] : experiments) {
-    if (std::ranges::all_of(operators, is_tried)) continue;
-    SCOPED_TRACE(file);
-    tried.insert(operators.begin(), operators.end());
-    file_ = file;
+  std::set<std::string> tried;  // lines that name an operator
+  for (const fs::path& experiment : experiments) {
+    std::istringstream lines(read_experiment({experiment, {}}).resolved);
+    bool is_new = false;
+    for (std::string line; std::getline(lines, line);)
+      if (line.starts_with("name = ")) is_new = tried.insert(line).second || is_new;
+    if (!is_new) continue;
+    SCOPED_TRACE(experiment);
+    file_ = experiment;
     const Words settings = testing::shrinking(file_);
     const std::string alone = std::to_string(count++), ranks = alone + " ranks";
-    expect_success(run_command(alone, settings));
-    expect_success(started(3, run_command(ranks, settings)));
+    output_of(run_command(alone, settings));
+    output_of(started(3, run_command(ranks, settings)));
     expect_equal(alone, ranks);
   }
   EXPECT_GT(count, 5);
 }
 
 TEST_F(Ranks, OfIslandsMakeTheSameRunAsOneProcess) {
-  file_ = scratch_.write("islands.toml", testing::small_islands);
-  expect_success(run_command("alone"));
+  file_ = scratch_.write("islands.toml", small_islands);
+  output_of(run_command("alone"));
   for (const int count : {1, 2, 3, 5, 7}) {
     const std::string folder = std::to_string(count);
-    expect_success(started(count, run_command(folder)));
+    output_of(started(count, run_command(folder)));
     expect_equal("alone", folder);
   }
-}
-
-TEST_F(Ranks, SayWhatEachOfThemHasDone) {
-  const Finished finished = testing::run(started(3, run_command("ranks")));
-  for (const char* rank : {"rank 0 on ", "rank 1 on ", "rank 2 on "})
-    EXPECT_THAT(finished.output, ::testing::HasSubstr(rank));
 }
 
 /// Returns the processes that a process has started, in the order in which they were started.
@@ -140,85 +120,73 @@ std::string variable(pid_t process, const std::string& name) {
   return {};
 }
 
-/// Kills a rank of a run after its second generation.
-void kill_rank(Process& launcher, int rank) {
+/// Kills a rank of a run when it has printed a text.
+void kill_rank_after(const std::string& text, Process& launcher, int rank) {
   while (const std::optional<std::string> line = launcher.read_line())
-    if (line->starts_with("generation 1 ")) break;
+    if (line->find(text) != std::string::npos) break;
   int killed = 0;
   for (const pid_t child : children(launcher.id()))
     if (variable(child, "OMPI_COMM_WORLD_RANK") == std::to_string(rank)) killed += kill(child, SIGKILL) == 0;
   EXPECT_EQ(killed, 1);
 }
 
-/// Of 40 generations, which take some seconds.
-const Words longer{"experiment.evaluations=240", "fitness.0.window=0.5", "fitness.1.window=0.5"};
+TEST_F(Ranks, GoOnAfterASignalOrWithoutAKilledOneAndAnyNumberOfThemResumes) {
+  // of 40 generations, which take some seconds
+  const Words longer{"experiment.evaluations=240", "fitness.0.window=0.5", "fitness.1.window=0.5"};
+  const auto expect_interrupted = [&](const std::string& folder) {
+    EXPECT_LT(Archive::read(scratch_ / folder).generations().size(), 40u) << "it was done before it could be ended";
+  };
+  output_of(run_command("straight", longer));
 
-TEST_F(Ranks, SurviveASignalToAllOfThemAndEndWithRank0) {
-  expect_success(run_command("straight", longer));
-  Words run = run_command("stopped", longer);
-  run.emplace_back("--resume");
-  Process process(started(3, run));
-  while (const std::optional<std::string> line = process.read_line())
+  const Words run = joined(run_command("stopped", longer), {"--resume"});
+  Process stopped(started(3, run));
+  while (const std::optional<std::string> line = stopped.read_line())
     if (line->starts_with("generation 1 ")) break;
-  process.send(SIGUSR1);  // which mpirun forwards to all ranks
-  EXPECT_EQ(process.wait(), 130) << process.output();
-  EXPECT_THAT(process.output(), ::testing::HasSubstr("rank 2 on ")) << "rank 0 did not end in order";
-  EXPECT_LT(Archive::read(scratch_ / "stopped").generations().size(), 40u) << "it was done before it could be stopped";
-  expect_success(started(2, run));
+  stopped.send(SIGUSR1);  // which mpirun forwards to all ranks
+  EXPECT_EQ(stopped.wait(), 130) << stopped.output();
+  EXPECT_THAT(stopped.output(), ::testing::HasSubstr("rank 2 on ")) << "rank 0 did not end in order";
+  expect_interrupted("stopped");
+  output_of(started(2, run));
   expect_equal("straight", "stopped");
-}
 
-class KilledRank : public Ranks, public ::testing::WithParamInterface<int> {};
+  for (const int rank : {0, 2}) {
+    const std::string folder = "without " + std::to_string(rank);
+    Process process(started(3, run_command(folder, longer)));
+    kill_rank_after("generation 1 ", process, rank);
+    EXPECT_NE(process.wait(), 0);
+    expect_interrupted(folder);
+    output_of(started(2, resume_command(folder)));
+    expect_equal("straight", folder);
+  }
 
-TEST_P(KilledRank, EndsARunThatAnyNumberOfRanksResume) {
-  expect_success(run_command("straight", longer));
-  Process process(started(3, run_command("killed", longer)));
-  kill_rank(process, GetParam());
-  EXPECT_NE(process.wait(), 0);
-  EXPECT_LT(Archive::read(scratch_ / "killed").generations().size(), 40u) << "it was done before it could be killed";
-  expect_success(started(2, resume_command("killed")));
-  expect_equal("straight", "killed");
-}
-
-TEST_F(Ranks, GoOnWithoutAKilledOneIfTheLauncherLetsThem) {
-  expect_success(run_command("straight", longer));
-  Words command = started(3, run_command("killed", longer));
+  Words command = started(3, run_command("recovered", longer));
   command.insert(command.begin() + 1, "--enable-recovery");
   Process process(command);
-  kill_rank(process, 2);
+  kill_rank_after("generation 1 ", process, 2);
   EXPECT_EQ(process.wait(), 0);
-  EXPECT_THAT(process.output(), testing::naming("warning: rank 2 on ", "lost on the way"));
-  expect_equal("straight", "killed");
-}
-
-/// Kills a rank of a run with islands when islands have completed about three generations.
-void kill_rank_of_islands(Process& launcher, int rank) {
-  while (const std::optional<std::string> line = launcher.read_line())
-    if (line->find("evaluations 4") != std::string::npos) break;
-  int killed = 0;
-  for (const pid_t child : children(launcher.id()))
-    if (variable(child, "OMPI_COMM_WORLD_RANK") == std::to_string(rank)) killed += kill(child, SIGKILL) == 0;
-  EXPECT_EQ(killed, 1);
+  EXPECT_THAT(process.output(), naming("warning: rank 2 on ", "lost on the way"));
+  expect_equal("straight", "recovered");
 }
 
 /// Ranks 0 and 1 belong to island 1, rank 2 is the first one of island 2.
-TEST_P(KilledRank, EndsARunWithIslandsThatAnyNumberOfRanksResume) {
-  file_ = scratch_.write("islands.toml", testing::small_islands);
+TEST_F(Ranks, OfIslandsEndWithAKilledOneAndAnyNumberOfThemResumes) {
+  file_ = scratch_.write("islands.toml", small_islands);
   const Words slow{"fitness.0.window=2", "fitness.1.window=2"};
-  expect_success(run_command("straight", slow));
-  Process process(started(5, run_command("killed", slow)));
-  kill_rank_of_islands(process, GetParam());
-  EXPECT_NE(process.wait(), 0);
-  std::int64_t done = 0;
-  for (const fs::path& folder : island_folders(scratch_ / "killed"))
-    if (const auto generations = Archive::read(folder).generations(); !generations.empty())
-      done += generations.back().evaluations;
-  EXPECT_LT(done, 104) << "it was done before it could be killed";
-  expect_success(started(2, resume_command("killed")));
-  expect_equal("straight", "killed");
+  output_of(run_command("straight", slow));
+  for (const int rank : {0, 2}) {
+    const std::string folder = "without " + std::to_string(rank);
+    Process process(started(5, run_command(folder, slow)));
+    kill_rank_after("evaluations 4", process, rank);  // when islands have completed about three generations
+    EXPECT_NE(process.wait(), 0);
+    std::int64_t done = 0;
+    for (const fs::path& island : island_folders(scratch_ / folder))
+      if (const auto generations = Archive::read(island).generations(); !generations.empty())
+        done += generations.back().evaluations;
+    EXPECT_LT(done, 104) << "it was done before it could be killed";
+    output_of(started(2, resume_command(folder)));
+    expect_equal("straight", folder);
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(Rank, KilledRank, ::testing::Values(0, 2));
 
 /// Two ranks with a folder of operators, in which rank 1 sees other files than rank 0, as on another host.
 class TwoHosts : public Ranks {
@@ -229,53 +197,39 @@ class TwoHosts : public Ranks {
     if (testing::run({"unshare", "-m", "mount", "--bind", other_.string(), folder_.string()}).exit_code != 0)
       GTEST_SKIP() << "mounting needs root";
   }
-  Finished run(const Words& more = {}) const {
-    Words here = with_operators(run_command("run"));
-    here.insert(here.end(), more.begin(), more.end());
-    Words command{EVODEVO_MPIRUN, "--oversubscribe", "--bind-to", "none", "-n", "1"};
-    command.insert(command.end(), here.begin(), here.end());
+  Words run(const Words& more = {}) const {
+    const Words here = joined(alone("run"), more);
     const std::string mount = "mount --bind '" + other_.string() + "' '" + folder_.string() + "' && exec \"$@\"";
-    const Words there{":", "-n", "1", "unshare", "-m", "sh", "-c", mount, "sh"};
-    command.insert(command.end(), there.begin(), there.end());
-    command.insert(command.end(), here.begin(), here.end());
-    return testing::run(command);
+    return started(here, joined({"unshare", "-m", "sh", "-c", mount, "sh"}, here));
   }
-  Words with_operators(Words command) const {
-    command.insert(command.end(), {"--plugin-path", folder_.string()});
-    return command;
+  Words alone(const std::string& folder) const {
+    return joined(run_command(folder), {"--plugin-path", folder_.string()});
   }
 
   const fs::path folder_ = scratch_ / "operators", other_ = scratch_ / "other";
 };
 
 TEST_F(TwoHosts, OfWhichOneHasNotAllOperatorsAreRefused) {
-  std::string text = testing::small_experiment;
+  std::string text = small_experiment;
   const auto begin = text.find("name = \"distance\""), end = text.find("[[fitness]]", begin);
   text.replace(begin, end - begin, "name = \"early-way\"\n\n");
   file_ = scratch_.write("early.toml", text);
   fs::copy(fs::path(EVODEVO_FAULTY_PLUGINS) / "special", folder_);
-  const Finished alone = testing::run(with_operators(run_command("alone")));
-  EXPECT_EQ(alone.exit_code, 0) << alone.output;
-  const Finished finished = run();
-  EXPECT_NE(finished.exit_code, 0);
-  EXPECT_THAT(finished.output, testing::naming("rank 1 on ", "\"early-way\""));
-  EXPECT_FALSE(fs::exists(scratch_ / "run"));
+  output_of(alone("alone"));
+  expect_refused(run(), "rank 1 on ", "\"early-way\"");
+  expect_nothing_written();
 }
 
 TEST_F(TwoHosts, OfWhichOneHasAnotherBuildOfAnOperatorAreRefused) {
   const fs::path library = "distance.evodevo.so";
   for (const fs::path& folder : {folder_, other_})
     fs::copy_file(fs::path(EVODEVO_PROGRAM).parent_path().parent_path() / "lib/evodevo" / library, folder / library);
-  const Finished equal = run();
-  EXPECT_EQ(equal.exit_code, 0) << equal.output;
+  output_of(run());
   fs::remove_all(scratch_ / "run");
   std::ofstream(other_ / library, std::ios::app) << "more";
-  const Finished finished = run();
-  EXPECT_NE(finished.exit_code, 0);
-  EXPECT_THAT(finished.output, testing::naming("rank 1 on ", "fitness operator \"distance\"", "the same libraries"));
-  EXPECT_FALSE(fs::exists(scratch_ / "run"));
-  const Finished mixed = run({"--mixed"});
-  EXPECT_EQ(mixed.exit_code, 0) << mixed.output;
+  expect_refused(run(), "rank 1 on ", "fitness operator \"distance\"", "the same libraries");
+  expect_nothing_written();
+  output_of(run({"--mixed"}));
   const Archive archive = Archive::read(scratch_ / "run");
   ASSERT_EQ(archive.provenances().size(), 2u);
   EXPECT_FALSE(are_same_builds(archive.provenances()[0], archive.provenances()[1]));
@@ -289,19 +243,15 @@ TEST_F(Ranks, OfWhichOneIsAnotherBuildAreRefusedUnlessTheyAreMixed) {
   fs::create_directory_symlink(program.parent_path().parent_path() / "lib", scratch_ / "lib");
   std::ofstream(other, std::ios::app) << "more";
   const auto run = [&](const Words& more) {
-    Words here = run_command("run"), command = started(1, {});
-    here.insert(here.end(), more.begin(), more.end());
-    command.insert(command.end(), here.begin(), here.end());
-    here.front() = other.string();
-    command.insert(command.end(), {":", "-n", "1"});
-    command.insert(command.end(), here.begin(), here.end());
-    return testing::run(command);
+    const Words here = joined(run_command("run"), more);
+    Words there = here;
+    there.front() = other.string();
+    return started(here, there);
   };
-  EXPECT_THAT(run({}).output, testing::naming("rank 1 on ", file_hash(other), "the same program", "--mixed"));
-  EXPECT_FALSE(fs::exists(scratch_ / "run"));
-  const Finished mixed = run({"--mixed"});
-  EXPECT_EQ(mixed.exit_code, 0) << mixed.output;
-  expect_success(run_command("alone"));
+  expect_refused(run({}), "rank 1 on ", file_hash(other), "the same program", "--mixed");
+  expect_nothing_written();
+  output_of(run({"--mixed"}));
+  output_of(run_command("alone"));
   expect_equal("alone", "run");  // both builds compute the same
   const std::vector<Provenance> provenances = Archive::read(scratch_ / "run").provenances();
   ASSERT_EQ(provenances.size(), 2u);
@@ -309,35 +259,22 @@ TEST_F(Ranks, OfWhichOneIsAnotherBuildAreRefusedUnlessTheyAreMixed) {
   EXPECT_EQ(provenances[1].program, file_hash(other));
 }
 
-TEST_F(Ranks, HaveThreadsOfTheirOwn) {
-  Words command = started(1, run_command("run"));
-  command.insert(command.end(), {":", "-n", "1"});
-  const Words other = run_command("run");
-  command.insert(command.end(), other.begin(), other.end());
-  command.insert(command.end(), {"--threads", "-3"});
-  const Finished finished = testing::run(command);
-  EXPECT_NE(finished.exit_code, 0);
-  EXPECT_THAT(finished.output, testing::naming("rank 1 on ", "--threads -3"));
+TEST_F(Ranks, WithThreadsOfTheirOwnThatThereAreNotAreRefused) {
+  const Words run = run_command("run");
+  expect_refused(started(run, joined(run, {"--threads", "-3"})), "rank 1 on ", "--threads -3");
 }
 
-TEST_F(Ranks, ThatDoNotKnowOfEachOtherAreRefused) {
+TEST_F(Ranks, ThatDoNotKnowOfEachOtherOrHaveNoLibraryForMpiAreRefused) {
   setenv("SLURM_STEP_NUM_TASKS", "4", 1);
-  const Finished finished = testing::run(run_command("run"));
+  expect_refused(run_command("run"), "4 processes", "srun --mpi=pmix");
+  expect_nothing_written();
   unsetenv("SLURM_STEP_NUM_TASKS");
-  EXPECT_EQ(finished.exit_code, 1);
-  EXPECT_THAT(finished.output, testing::naming("4 processes", "srun --mpi=pmix"));
-  EXPECT_FALSE(fs::exists(scratch_ / "run"));
-}
 
-TEST_F(Ranks, WithoutTheLibraryForMpiAreRefused) {
-  const fs::path program(EVODEVO_PROGRAM);
   fs::create_directories(scratch_ / "bin");
-  fs::copy_file(program, scratch_ / "bin" / "evodevo");
+  fs::copy_file(EVODEVO_PROGRAM, scratch_ / "bin" / "evodevo");
   Words command = run_command("run");
   command.front() = (scratch_ / "bin" / "evodevo").string();
-  const Finished finished = testing::run(started(2, command));
-  EXPECT_NE(finished.exit_code, 0);
-  EXPECT_THAT(finished.output, testing::naming("2 processes", "libevodevo-mpi.so", "libopenmpi-dev"));
+  expect_refused(started(2, command), "2 processes", "libevodevo-mpi.so", "libopenmpi-dev");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Many runs in one process.
+// Many runs, or a run with many islands, in one process.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include "support/experiments.hpp"
 #include "support/islands.hpp"
 #include "support/messages.hpp"
-#include "support/process.hpp"
+#include "support/program.hpp"
 #include "support/runs.hpp"
 #include "support/scratch.hpp"
 
@@ -20,20 +20,16 @@ namespace evodevo::EVODEVO_FILE {
 namespace {
 
 namespace fs = std::filesystem;
+using namespace testing;
 using Json = nlohmann::json;
-using testing::Finished;
-using testing::Process;
 
 class RunMany : public ::testing::Test {
  protected:
-  using Words = std::vector<std::string>;
-
   /// The arguments of a run in a folder.
   Words arguments(const std::string& folder, const Words& more = {}) const {
-    Words words{file_, "--no-report", "--out", (scratch_ / folder).string()};
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
+    return joined({file_, "--no-report", "--out", (scratch_ / folder).string()}, more);
   }
+  static Words alone(const Words& run) { return joined({EVODEVO_PROGRAM, "run"}, run); }
   /// Writes the file of some runs, and returns the command that makes them.
   Words command(const std::vector<Words>& runs, int jobs) const {
     std::string lines;
@@ -53,73 +49,51 @@ class RunMany : public ::testing::Test {
     return {std::istreambuf_iterator<char>(stream), {}};
   }
   void expect_same(const std::string& folder, const std::string& other) const {
-    testing::expect_same_runs(Archive::read(scratch_ / folder), Archive::read(scratch_ / other));
+    expect_same_runs(Archive::read(scratch_ / folder), Archive::read(scratch_ / other));
   }
 
-  testing::Scratch scratch_;
-  std::string file_ = scratch_.write("small.toml", testing::small_experiment);
+  Scratch scratch_;
+  std::string file_ = scratch_.write("small.toml", small_experiment);
 };
 
-TEST_F(RunMany, RunsAreTheSameAsAlone) {
+TEST_F(RunMany, RunsAreTheSameAsAloneWithTheThreadsThatTheyAskFor) {
   const Words verifying{"--set", "experiment.verify_front=true", "--set", "selection.name=comma"};
-  std::vector<Words> runs;
-  for (const char* seed : {"1", "2", "3"})
-    for (const bool verified : {false, true}) {
-      Words words = arguments((verified ? "verified-" : "plain-") + std::string(seed), {"--seed", seed});
-      if (verified) words.insert(words.end(), verifying.begin(), verifying.end());
-      runs.push_back(words);
-    }
-  const Finished together = testing::run(command(runs, 4));
-  ASSERT_EQ(together.exit_code, 0) << together.output;
-  EXPECT_EQ(codes(together.output), (std::map<int, int>{{0, 0}, {1, 0}, {2, 0}, {3, 0}, {4, 0}, {5, 0}}));
-  Words alone{EVODEVO_PROGRAM, "run"};
+  std::vector<Words> runs{arguments("set", {"--device", "cpu", "--set", "simulation.threads=3"}),
+                          arguments("given", {"--device", "cpu", "--threads", "3"})};
+  for (const std::string seed : {"1", "2", "3"}) {
+    runs.push_back(arguments("plain-" + seed, {"--seed", seed}));
+    runs.push_back(arguments("verified-" + seed, joined({"--seed", seed}, verifying)));
+  }
+  EXPECT_EQ(codes(output_of(command(runs, 4))),
+            (std::map<int, int>{{0, 0}, {1, 0}, {2, 0}, {3, 0}, {4, 0}, {5, 0}, {6, 0}, {7, 0}}));
   for (const std::string kind : {"plain", "verified"}) {
-    Words words = arguments(kind + "-alone", {"--seed", "3"});
-    if (kind == "verified") words.insert(words.end(), verifying.begin(), verifying.end());
-    words.insert(words.begin(), alone.begin(), alone.end());
-    ASSERT_EQ(testing::run(words).exit_code, 0);
+    const Words same{"--seed", "3"};
+    output_of(alone(arguments(kind + "-alone", kind == "verified" ? joined(same, verifying) : same)));
     expect_same(kind + "-alone", kind + "-3");
   }
-  EXPECT_THAT(log_of("plain-2"), testing::naming("evaluations 24/24", "best: individual"));
+  EXPECT_THAT(log_of("plain-2"), naming("evaluations 24/24", "best: individual"));
+  for (const char* name : {"set", "given"}) EXPECT_THAT(log_of(name), naming("3 threads")) << name;
 }
 
-TEST_F(RunMany, ARunHasTheThreadsThatItsArgumentsAskFor) {
-  const Finished finished =
-      testing::run(command({arguments("set", {"--device", "cpu", "--set", "simulation.threads=3"}),
-                            arguments("given", {"--device", "cpu", "--threads", "3"})},
-                           2));
-  ASSERT_EQ(finished.exit_code, 0) << finished.output;
-  for (const char* name : {"set", "given"}) EXPECT_THAT(log_of(name), testing::naming("3 threads")) << name;
-}
-
-TEST_F(RunMany, ARunThatFailsDoesNotEndOthers) {
-  const Finished finished = testing::run(command(
-      {arguments("wrong", {"--set", "experiment.population=none"}), arguments("right"), arguments("wrong/of/")}, 1));
-  EXPECT_EQ(finished.exit_code, 1) << finished.output;
-  EXPECT_EQ(codes(finished.output), (std::map<int, int>{{0, 2}, {1, 0}, {2, 0}}));
-  EXPECT_THAT(log_of("wrong"), testing::naming("experiment.population", "\"none\"", "expected"));
-  EXPECT_THAT(log_of("wrong/of"), testing::naming("best: individual"));
-  EXPECT_EQ(Archive::read(scratch_ / "right").generations().back().evaluations, 24);
-}
-
-TEST_F(RunMany, AnIslandThatFailsDoesNotEndOtherRuns) {
-  std::string islands = testing::small_islands;
+TEST_F(RunMany, ARunOrAnIslandThatFailsDoesNotEndOthers) {
+  std::string islands = small_islands;
   const std::string sound = "name = \"reset-weight\"\nprobability = 0.35";
   islands.replace(islands.find(sound), sound.size(), "name = \"nothing\"\nprobability = 1.0");
   Words failing = arguments("failing", {"--plugin-path", (fs::path(EVODEVO_FAULTY_PLUGINS) / "throws").string()});
   failing.front() = scratch_.write("islands.toml", islands);
-  const Finished finished = testing::run(command({failing, arguments("right")}, 1));
-  EXPECT_EQ(codes(finished.output), (std::map<int, int>{{0, 1}, {1, 0}})) << finished.output;
-  EXPECT_EQ(finished.exit_code, 1);
-  EXPECT_THAT(log_of("failing"), testing::naming("nothing to mutate", "island"));
+  const Words wrong = arguments("wrong", {"--set", "experiment.population=none"});
+  const std::string output = output_of(command({wrong, failing, arguments("right"), arguments("wrong/of/")}, 1), 1);
+  EXPECT_EQ(codes(output), (std::map<int, int>{{0, 2}, {1, 1}, {2, 0}, {3, 0}}));
+  EXPECT_THAT(log_of("wrong"), naming("experiment.population", "\"none\"", "expected"));
+  EXPECT_THAT(log_of("failing"), naming("nothing to mutate", "island"));
+  EXPECT_THAT(log_of("wrong/of"), naming("best: individual"));
+  EXPECT_EQ(Archive::read(scratch_ / "right").generations().back().evaluations, 24);
 }
 
 TEST_F(RunMany, WrongLinesAreRefusedBeforeAnyRunBegins) {
   const auto expect_refused = [&](const std::string& line, const auto&... parts) {
     const std::string file = scratch_.write("runs.jsonl", Json(arguments("first")).dump() + "\n\n" + line + '\n');
-    const Finished finished = testing::run({EVODEVO_PROGRAM, "run-many", file});
-    EXPECT_EQ(finished.exit_code, 2) << finished.output;
-    EXPECT_THAT(finished.output, testing::naming(file + ":3: ", parts...));
+    EXPECT_THAT(testing::refusal({"run-many", file}), naming(file + ":3: ", parts...));
     EXPECT_FALSE(fs::exists(scratch_ / "first"));
   };
   expect_refused("run small.toml", "JSON array", "--seed");
@@ -129,15 +103,10 @@ TEST_F(RunMany, WrongLinesAreRefusedBeforeAnyRunBegins) {
   expect_refused(Json(arguments("second", {"--until", "2h"})).dump(), "--until", "leave it out");
   expect_refused(Json(arguments("second", {"--sede", "2"})).dump(), "--sede");
   expect_refused(Json(arguments("second/../first/")).dump(), "--out", "runs.jsonl:1", "folder of its own");
-  const Finished empty = testing::run({EVODEVO_PROGRAM, "run-many", scratch_.write("empty.jsonl", "\n")});
-  EXPECT_EQ(empty.exit_code, 2);
-  EXPECT_THAT(empty.output, testing::naming("empty.jsonl", "no runs"));
-  const Finished missing = testing::run({EVODEVO_PROGRAM, "run-many", (scratch_ / "none").string()});
-  EXPECT_EQ(missing.exit_code, 2);
-  EXPECT_THAT(missing.output, testing::naming((scratch_ / "none").string(), "cannot be read"));
-  const Finished none = testing::run({EVODEVO_PROGRAM, "run-many", file_, "--jobs", "0"});
-  EXPECT_EQ(none.exit_code, 2);
-  EXPECT_THAT(none.output, testing::naming("--jobs 0", "at least 1"));
+  const std::string empty = scratch_.write("empty.jsonl", "\n"), none = (scratch_ / "none").string();
+  EXPECT_THAT(testing::refusal({"run-many", empty}), naming("empty.jsonl", "no runs"));
+  EXPECT_THAT(testing::refusal({"run-many", none}), naming(none, "cannot be read"));
+  EXPECT_THAT(testing::refusal({"run-many", file_, "--jobs", "0"}), naming("--jobs 0", "at least 1"));
 }
 
 TEST_F(RunMany, ASignalEndsAllAfterTheirGenerationsAndTheSameFileGoesOn) {
@@ -152,12 +121,69 @@ TEST_F(RunMany, ASignalEndsAllAfterTheirGenerationsAndTheSameFileGoesOn) {
     EXPECT_EQ(codes(process.output())[0], 130);
   }
   EXPECT_FALSE(fs::exists(scratch_ / "c")) << "it began after the signal";
-  const Finished finished = testing::run(command(runs, 2));
-  ASSERT_EQ(finished.exit_code, 0) << finished.output;
-  Words alone = arguments("straight", longer);
-  alone.insert(alone.begin(), {EVODEVO_PROGRAM, "run"});
-  ASSERT_EQ(testing::run(alone).exit_code, 0);
+  output_of(command(runs, 2));
+  output_of(alone(arguments("straight", longer)));
   for (const char* folder : {"a", "b", "c"}) expect_same("straight", folder);
+}
+
+class IslandCommands : public ::testing::Test {
+ protected:
+  Finished begin(const Words& more = {}) const {
+    return evodevo(joined({"run", file_, "--out", run_, "--device", "cpu", "--no-report"}, more));
+  }
+
+  Scratch scratch_;
+  const std::string file_ = scratch_.write("islands.toml", small_islands);
+  const std::string run_ = (scratch_ / "run").string();
+  const std::string second_ = (scratch_ / "run" / "island-2").string();
+};
+
+TEST_F(IslandCommands, ReadTheRunOrOneOfItsIslandsAndContinueOnlyTheWholeRun) {
+  const Finished finished = begin({"--log", (scratch_ / "log").string()});
+  ASSERT_EQ(finished.exit_code, 0) << finished.output;
+  EXPECT_THAT(finished.output, naming("evaluations 104/104", "3 islands", run_ + "/island-"));
+  EXPECT_THAT(evodevo({"show", run_}).output,
+              naming("\n     1           7           35", "\n     3           7           34"));
+  EXPECT_THAT(evodevo({"show", run_, "--json"}).output, naming("\"islands\"", "\"topology\": \"ring\""));
+  EXPECT_THAT(evodevo({"show", second_}).output, naming("island 2 of 3", "35 evaluations"));
+  EXPECT_THAT(refusal({"life", run_}), naming(run_, run_ + "/island-1"));
+  said({"life", second_});
+  refusal({"show", run_, "--individual", "7"});
+  std::ifstream log(scratch_ / "log");
+  int lines = 0;
+  for (std::string line; std::getline(log, line); ++lines) EXPECT_THAT(line, naming("\"island\":"));
+  EXPECT_EQ(lines, 21);
+
+  EXPECT_THAT(refusal({"resume", second_}), naming(second_));
+  said({"resume", run_});
+  EXPECT_EQ(begin({"--resume"}).exit_code, 0);
+  EXPECT_EQ(begin({"--resume", "--set", "islands.count=4"}).exit_code, 2);
+  EXPECT_EQ(begin().exit_code, 2) << "the folder is not empty";
+  const fs::path straight = scratch_ / "straight";
+  fs::copy(run_, straight, fs::copy_options::recursive);
+  fs::remove_all(second_);
+  EXPECT_THAT(refusal({"resume", run_}), naming(second_, "3 islands"));
+  EXPECT_EQ(begin({"--resume"}).exit_code, 2) << "the other islands have generations";
+
+  // what ended while it was created is begun again
+  fs::remove_all(run_);
+  { Archive::create(fs::path(run_) / "island-1", testing::read_islands(scratch_, small_islands)[0], "cpu"); }
+  fs::create_directory(second_);
+  std::ofstream(second_ + "/run.sqlite") << "";
+  const Finished again = begin({"--resume"});
+  EXPECT_EQ(again.exit_code, 0) << again.output;
+  expect_same_islands(straight, run_);
+}
+
+TEST_F(IslandCommands, WriteNoLogIntoAnIsland) {
+  ASSERT_EQ(begin({"--until", "1s", "--set", "experiment.evaluations=100000"}).exit_code, 130);
+  EXPECT_THAT(refusal({"resume", run_, "--log", second_ + "/run.sqlite"}), naming("--log", second_ + "/run.sqlite"));
+  said({"show", second_});
+}
+
+TEST_F(IslandCommands, CheckShowsWhoSendsToWhom) {
+  EXPECT_THAT(said({"check", file_, "--set", "islands.topology=star"}),
+              naming("island 1: ", "sends to 2, 3\n", "seed 41", "elitist; sends to 1\n"));
 }
 
 }  // namespace

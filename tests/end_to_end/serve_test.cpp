@@ -10,7 +10,7 @@
 
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
-#include "support/process.hpp"
+#include "support/program.hpp"
 #include "support/scratch.hpp"
 
 namespace evodevo::EVODEVO_FILE {
@@ -18,9 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 namespace http = boost::beast::http;
-using testing::Finished;
+using namespace testing;
 using ::testing::HasSubstr;
-using testing::Process;
 
 /// A run with a stand-in for the page of the viewer, and the program that serves it.
 class Serve : public ::testing::Test {
@@ -36,9 +35,8 @@ class Serve : public ::testing::Test {
   }
 
   void run(const std::string& folder, int evaluations) {
-    const Finished finished = testing::run({program_, "run", experiment_, "--no-report", "--out", folder, "--set",
-                                            "experiment.evaluations=" + std::to_string(evaluations)});
-    ASSERT_EQ(finished.exit_code, 0) << finished.output;
+    output_of({program_, "run", experiment_, "--no-report", "--out", folder, "--set",
+               "experiment.evaluations=" + std::to_string(evaluations)});
   }
 
   /// Sends a request to the port of `address`. `host` is the name by which the page is addressed.
@@ -58,19 +56,19 @@ class Serve : public ::testing::Test {
     return response;
   }
 
-  testing::Scratch scratch_;
+  Scratch scratch_;
   std::string program_ = (scratch_ / "bin/evodevo").string(), run_ = (scratch_ / "run").string();
-  std::string experiment_ = scratch_.write("small.toml", testing::small_experiment);
+  std::string experiment_ = scratch_.write("small.toml", small_experiment);
 };
 
-TEST_F(Serve, ThePageGrowsWithTheRun) {
+TEST_F(Serve, ThePageGrowsWithTheRunForPagesOfThisMachineAlone) {
   Process server({program_, "report", run_, "--serve", "0"});
   const std::string address = server.read_line().value();
   ASSERT_THAT(address, ::testing::MatchesRegex("http://127\\.0\\.0\\.1:[0-9]+/"));
   EXPECT_EQ(answer(address, "/generations").body(), "[2]");
   const auto page = answer(address, "/");
   EXPECT_EQ(page.result(), http::status::ok);
-  EXPECT_THAT(page.body(), testing::naming("\"kind\":\"report\"", "connect-src 'self'", "\"[2]\""));
+  EXPECT_THAT(page.body(), naming("\"kind\":\"report\"", "connect-src 'self'", "\"[2]\""));
 
   const std::string longer = (scratch_ / "longer").string();
   run(longer, 24);
@@ -78,40 +76,28 @@ TEST_F(Serve, ThePageGrowsWithTheRun) {
   EXPECT_EQ(answer(address, "/generations").body(), "[4]");
   EXPECT_THAT(answer(address, "/").body(), HasSubstr("\"[4]\""));
 
-  server.send(SIGTERM);
-  EXPECT_EQ(server.wait(), 0) << server.output();
-}
-
-TEST_F(Serve, OnlyPagesOfThisMachineAreAnswered) {
-  Process server({program_, "report", run_, "--serve", "0"});
-  const std::string address = server.read_line().value();
   EXPECT_EQ(answer(address, "/", "elsewhere.example").result(), http::status::misdirected_request);
   EXPECT_EQ(answer(address, "/etc/passwd").result(), http::status::not_found);
   EXPECT_EQ(answer(address, "/", "", http::verb::post).result(), http::status::method_not_allowed);
-  server.send(SIGINT);
-  EXPECT_EQ(server.wait(), 0) << server.output();
-}
 
-TEST_F(Serve, WhatCannotBeServedIsRefused) {
-  Process server({program_, "report", run_, "--serve", "0"});
-  const std::string address = server.read_line().value();
   const std::string port = address.substr(address.rfind(':') + 1, address.rfind('/') - address.rfind(':') - 1);
-  const auto refusal = [&](const std::vector<std::string>& options) {
-    std::vector<std::string> command{program_, "report", run_};
-    command.insert(command.end(), options.begin(), options.end());
-    const Finished finished = testing::run(command);
-    EXPECT_EQ(finished.exit_code, 2) << finished.output;
-    return finished.output;
-  };
-  EXPECT_THAT(refusal({"--serve", port}), testing::naming("--serve " + port, "0"));
-  EXPECT_THAT(refusal({"--serve", "65536"}), testing::naming("--serve 65536", "0 to 65535"));
-  EXPECT_THAT(refusal({"--serve", "0", "--out", "page.html"}), testing::naming("--out page.html", "--serve"));
+  const auto refusal = [&](const Words& options) { return output_of(joined({program_, "report", run_}, options), 2); };
+  EXPECT_THAT(refusal({"--serve", port}), naming("--serve " + port, "0"));
+  EXPECT_THAT(refusal({"--serve", "65536"}), naming("--serve 65536", "0 to 65535"));
+  EXPECT_THAT(refusal({"--serve", "0", "--out", "page.html"}), naming("--out page.html", "--serve"));
+
+  server.send(SIGTERM);
+  EXPECT_EQ(server.wait(), 0) << server.output();
+  Process interrupted({program_, "report", run_, "--serve", "0"});
+  ASSERT_TRUE(interrupted.read_line().has_value());
+  interrupted.send(SIGINT);
+  EXPECT_EQ(interrupted.wait(), 0) << interrupted.output();
 }
 
 TEST_F(Serve, ARunThatCannotBeReadEndsTheCommandAtOnce) {
   SQLite::Database(run_ + "/run.sqlite", SQLite::OPEN_READWRITE).exec("UPDATE scores SET value = 'many'");
   Process server({program_, "report", run_, "--serve", "0"});
-  ASSERT_THAT(server.read_line().value_or(""), testing::naming(run_, "score"));  // not an address
+  ASSERT_THAT(server.read_line().value_or(""), naming(run_, "score"));  // not an address
   EXPECT_EQ(server.wait(), 2) << server.output();
 }
 

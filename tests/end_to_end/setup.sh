@@ -85,26 +85,33 @@ fail() {
   printf '%s\n' "$1" "exit status $status" "standard output:" "$output" "standard error:" "$errors" "calls:" "$(cat "$called")"
   exit 1
 }
-succeeded() { [ "$status" = 0 ] || fail "it failed"; }
-# failed_in_a_line WORDS...   expects a failure with a one-line error message; only messages about installations may
-# precede it
-failed_in_a_line() {
+# does COMMAND..., prints TEXT COMMAND...   call it and expect success
+does() {
+  call "$@"
+  [ "$status" = 0 ] || fail "it failed"
+}
+prints() {
+  does "${@:2}"
+  [ "$output" = "$1" ] || fail "it does not print: $1"
+}
+# fails_in_a_line COMMAND WORDS...   expects a failure with a one-line error message; only messages about installations
+# may precede it
+fails_in_a_line() {
+  call $1
   [ "$status" = 1 ] || fail "the exit status is not 1"
-  local line
+  local line words
   line=$(grep -v '^evodevo: installing [a-z+0-9 -]*$' "$scratch/errors")
   [[ $(wc -l <<<"$line") = 1 && $line == evodevo:* ]] || fail "this is not one line"
-  local words
-  for words in "$@"; do [[ $line == *"$words"* ]] || fail "\"$words\" is missing"; done
+  for words in "${@:2}"; do [[ $line == *"$words"* ]] || fail "\"$words\" is missing"; done
 }
-has() { grep -qx -- "$1" "$installed" || fail "$1 is not installed"; }
-has_not() { ! grep -qx -- "$1" "$installed" || fail "$1 is installed"; }
+has() { for package; do grep -qx -- "$package" "$installed" || fail "$package is not installed"; done; }
+has_not() { for package; do ! grep -qx -- "$package" "$installed" || fail "$package is installed"; done; }
 times() { grep -c -- "$1" "$called" || true; }
 
 case_help() {
   EVODEVO_COMMAND=tools/evodevo "$program" --help >"$scratch/help"
   for asked in --help help; do
-    call tools/evodevo $asked
-    succeeded
+    does tools/evodevo $asked
     diff "$scratch/help" <(echo "$output") || fail "framework/help.txt is not what the program prints; write it anew:
 $(EVODEVO_COMMAND=@PROGRAM@ "$program" --help | sed "1s/$("$program" --version | sed -n '1s/.* //p')/@VERSION@/")"
   done
@@ -115,8 +122,7 @@ $(EVODEVO_COMMAND=@PROGRAM@ "$program" --help | sed "1s/$("$program" --version |
   call tools/evodevo
   [ "$status" = 2 ] && [ "$errors" = "$(cat "$scratch/help")" ] || fail "without arguments it does not show the help"
   for asked in "film --help" "help film" "help experiment"; do
-    call tools/evodevo $asked
-    succeeded
+    does tools/evodevo $asked
     [[ $output == "$(cat "$scratch/help")" && $errors == *"tools/evodevo operators"* ]] || fail "it does not say how to know more"
   done
   [ ! -s "$called" ] && [ ! -e "$checkout/build" ] || fail "asking for help sets something up"
@@ -128,40 +134,30 @@ $(EVODEVO_COMMAND=@PROGRAM@ "$program" --help | sed "1s/$("$program" --version |
 case_tool_help() {
   local name
   for name in bench accuracy stress release; do
-    call tools/$name --help
-    succeeded
+    does tools/$name --help
     [[ $output == "tools/$name "*"  tools/$name "* ]] || fail "there is no page with an example"
   done
-  call tools/test --help
-  succeeded
+  does tools/test --help
   [[ $output == *"CTest"* ]] || fail "it does not say what it does with arguments"
   for name in compare tune figure; do
-    call tools/$name --help
-    succeeded
-    [ "$output" = "python3 -P -m $name --help" ] || fail "it does not show its help"
+    prints "python3 -P -m $name --help" tools/$name --help
   done
   [ "$(times '^apt-get\|^cmake')" = 0 ] && [ ! -e "$checkout/build" ] || fail "asking for help sets something up"
 }
 
 case_charts() {
   call tools/evodevo run some.toml
-  call tools/bench --runs 1
-  succeeded
-  [ "$output" = "evodevo-bench --runs 1" ] || fail "it does not run"
-  for package in python3 python3-matplotlib python3-scipy; do has_not $package; done
-  call tools/figure some.json out.svg
-  succeeded
-  [ "$output" = "python3 -P -m figure some.json out.svg" ] || fail "it does not draw"
+  prints "evodevo-bench --runs 1" tools/bench --runs 1
+  has_not python3 python3-matplotlib python3-scipy
+  prints "python3 -P -m figure some.json out.svg" tools/figure some.json out.svg
   PYTHONPATH=/elsewhere call tools/figure some.json out.svg
   [[ $(tail -n 1 "$called") = "modules from $checkout/tools/parts:/elsewhere" ]] || fail "the user's modules are hidden"
   has python3-matplotlib
   has_not python3-scipy
-  call tools/compare some.toml
-  succeeded
+  does tools/compare some.toml
   has python3-scipy
   : >"$called"
-  call tools/stress charts --quick
-  succeeded
+  does tools/stress charts --quick
   [ "$output" = "$(printf '%s\n' "evodevo-stress charts --quick" "python3 -P -m stress.draw charts")" ] ||
     fail "it does not draw what it measured"
   [ "$(times ^apt-get)" = 0 ] || fail "it installs what is installed"
@@ -171,39 +167,32 @@ case_no_charts() {
   local name
   stand_in id <<<'echo 1000'
   for name in compare tune figure parts/accuracy/draw parts/stress/draw; do
-    call tools/$name some other.svg
-    failed_in_a_line "needs root" "apt-get install python3 python3-matplotlib"
+    fails_in_a_line "tools/$name some other.svg" "needs root" "apt-get install python3 python3-matplotlib"
   done
   stand_in id <<<'echo 0'
   stand_in apt-get <<<"echo \"E: Failed to fetch http://deb.debian.org/p.deb  Temporary failure resolving 'deb.debian.org'\"; exit 100"
-  call tools/compare some.toml
-  failed_in_a_line "resolving 'deb.debian.org'"
+  fails_in_a_line "tools/compare some.toml" "resolving 'deb.debian.org'"
   rm "$scratch/bin/apt-get" "$scratch/bin/dpkg-query"
-  call tools/compare some.toml
-  failed_in_a_line "there is no apt-get" "python3-matplotlib python3-scipy"
+  fails_in_a_line "tools/compare some.toml" "there is no apt-get" "python3-matplotlib python3-scipy"
   # the results of the measurements, which take a long time, are written nevertheless
-  call tools/accuracy charts --quick
-  succeeded
+  does tools/accuracy charts --quick
   [[ $output = "evodevo-accuracy charts --quick" && $errors == *"data without charts: "*"python3-matplotlib"* ]] ||
     fail "it does not measure without charts"
 }
 
 case_packages() {
-  call tools/evodevo run some.toml
-  succeeded
-  [ "$output" = "evodevo run some.toml" ] || fail "it does not run"
-  for package in g++ cmake make ninja-build libhwy-dev; do has $package; done
-  for package in libgtest-dev libgmock-dev python3 pybind11-dev nodejs npm ffmpeg chromium; do has_not $package; done
+  prints "evodevo run some.toml" tools/evodevo run some.toml
+  has g++ cmake make ninja-build libhwy-dev
+  has_not libgtest-dev libgmock-dev python3 pybind11-dev nodejs npm ffmpeg chromium
   : >"$called"
   call tools/evodevo run some.toml
   [ "$(times '^apt-get\|^cmake')" = 0 ] || fail "it sets up what is set up"
-  call tools/evodevo report runs/some-1
-  succeeded
+  does tools/evodevo report runs/some-1
   has npm
-  for package in libgtest-dev ffmpeg chromium; do has_not $package; done
+  has_not libgtest-dev ffmpeg chromium
   grep -q '^ID=ubuntu' /etc/os-release || {
     call tools/evodevo film runs/some-1
-    for package in ffmpeg chromium libegl1; do has $package; done
+    has ffmpeg chromium libegl1
     has_not libgtest-dev
   }
   [[ $(cat "$called") != *"holds the lock"* ]] || fail "what is installed could hold the lock for good"
@@ -212,12 +201,8 @@ case_packages() {
 case_tests() {
   call tools/evodevo operators
   [ "$(times 'EVODEVO_TESTS=OFF')" = 1 ] || fail "a command has the tests configured"
-  call tools/test -R some
-  succeeded
-  for package in libgtest-dev libgmock-dev python3 pybind11-dev python3-dev python3-matplotlib python3-scipy \
-    python3-pandas; do
-    has $package
-  done
+  does tools/test -R some
+  has libgtest-dev libgmock-dev python3 pybind11-dev python3-dev python3-matplotlib python3-scipy python3-pandas
   [ "$(times 'EVODEVO_TESTS=ON')" = 1 ] || fail "the tests are not configured"
   grep -q '^ctest .*-R some' "$called" || fail "no test is run"
   call tools/test
@@ -229,8 +214,7 @@ case_no_module() {
   stand_in apt-get <<'END'
 [[ " $* " != *" pybind11-dev "* ]] || { echo "E: Unable to locate package pybind11-dev"; exit 100; }
 END
-  call tools/test -R some
-  succeeded
+  does tools/test -R some
   [[ $errors == *"no compiled Python module"*"Unable to locate package pybind11-dev"* ]] || fail "it does not say why"
   grep -q '^ctest .*-R some' "$called" || fail "no test is run"
   printf '%s\n' pybind11-dev python3-dev >>"$installed"
@@ -246,8 +230,7 @@ case_held_locks() {
 END
     rm -rf "$checkout/build"
     : >"$called"
-    call tools/evodevo operators
-    succeeded
+    does tools/evodevo operators
     [ "$(times ^sleep)" = 3 ] && [ "$(grep -c waiting <<<"$errors")" = 1 ] || fail "it does not wait, or does not say so once"
   done
   grep -q '^apt-get.* DPkg::Lock::Timeout=[1-9].* install' "$called" || fail "apt-get does not wait for dpkg's lock"
@@ -262,55 +245,44 @@ case_no_network() {
 echo "W: Failed to fetch http://deb.debian.org/debian/dists/bookworm/InRelease  Temporary failure resolving 'deb.debian.org'"
 [[ " $* " == *" update "* ]] || { for i in {1..95}; do echo "E: Unable to locate package some-$i"; done; exit 100; }
 END
-  call tools/evodevo operators
-  failed_in_a_line "resolving 'deb.debian.org'" "$checkout/build/.apt-log"
+  fails_in_a_line "tools/evodevo operators" "resolving 'deb.debian.org'" "$checkout/build/.apt-log"
   [ "$(grep -c some- "$checkout/build/.apt-log")" = 95 ] || fail "the log has not all"
-  call tools/test
-  failed_in_a_line "resolving 'deb.debian.org'"
+  fails_in_a_line "tools/test" "resolving 'deb.debian.org'"
 }
 
 case_no_viewer_without_network() {
   call tools/evodevo operators
   stand_in apt-get <<<"echo \"E: Failed to fetch http://deb.debian.org/n.deb  Temporary failure resolving 'deb.debian.org'\"; exit 100"
-  call tools/evodevo report runs/some-1
-  succeeded
+  does tools/evodevo report runs/some-1
   [[ $(grep -vc 'installing nodejs npm' <<<"$errors") = 1 && $errors == *"the viewer is left out"*"resolving 'deb.debian.org'"* ]] ||
     fail "it does not say in a line why there is no viewer"
 }
 
 case_no_root() {
   stand_in id <<<'echo 1000'
-  call tools/evodevo operators
-  failed_in_a_line "needs root" "apt-get install g++"
-  call tools/test
-  failed_in_a_line "needs root" "libgtest-dev"
+  fails_in_a_line "tools/evodevo operators" "needs root" "apt-get install g++"
+  fails_in_a_line "tools/test" "needs root" "libgtest-dev"
   stand_in sudo <<<'echo "sudo: a password is required" >&2; exit 1'
-  call tools/evodevo operators
-  failed_in_a_line "sudo: a password is required"
+  fails_in_a_line "tools/evodevo operators" "sudo: a password is required"
   stand_in sudo <<<'exec "$@"'
-  call tools/evodevo operators
-  succeeded
+  does tools/evodevo operators
   has g++
 }
 
 case_no_apt() {
   rm "$scratch/bin/apt-get" "$scratch/bin/dpkg-query"
-  call tools/evodevo operators
-  succeeded
+  does tools/evodevo operators
   rm -r "$checkout/build"
   stand_in cmake <<'END'
 printf '%s\n' '-- Found Threads: TRUE' 'CMake Error at CMakeLists.txt:37 (find_package):' '  By not providing "Findhwy.cmake"' \
   '  CMake did not find one.' '' '  Could not find a package configuration file' '' 'CMake Error at other.txt:1:' >&2
 exit 1
 END
-  call tools/evodevo operators
-  failed_in_a_line 'CMakeLists.txt:37' 'By not providing "Findhwy.cmake" CMake did not find one.' 'libhwy-dev' \
+  fails_in_a_line "tools/evodevo operators" 'CMakeLists.txt:37' 'By not providing "Findhwy.cmake" CMake did not find one.' 'libhwy-dev' \
     "$checkout/build/cpu/.setup-log"
   rm "$scratch/bin/cmake"
-  call tools/evodevo operators
-  failed_in_a_line "there is no apt-get" "libhwy-dev"
-  call tools/test
-  failed_in_a_line "there is no apt-get" "libgtest-dev"
+  fails_in_a_line "tools/evodevo operators" "there is no apt-get" "libhwy-dev"
+  fails_in_a_line "tools/test" "there is no apt-get" "libgtest-dev"
 }
 
 case_unusable_cuda() {
@@ -320,8 +292,7 @@ case_unusable_cuda() {
 [ "$2" != cuda ] || { printf '%s\n' 'CMake Error at CMakeLists.txt:48 (message):' '  no CUDA toolkit of version 12.8' '' ''; exit 1; }
 mkdir -p "$2/bin" && printf '#!/bin/sh\necho "$0"\n' >"$2/bin/evodevo" && chmod +x "$2/bin/evodevo"
 END
-  call tools/evodevo operators
-  succeeded
+  does tools/evodevo operators
   [[ $output == */build/cpu/bin/evodevo ]] || fail "it does not go on without CUDA"
   [ "$(grep -c 'no CUDA toolkit of version 12.8' <<<"$errors")" = 1 ] || fail "it does not say why"
   call tools/evodevo operators
@@ -333,8 +304,7 @@ case_paths() {
   for mark in '[' ']' ';' '$' '"' '\' '#' ',' '|' '<' '>' '*' '?' "'" '`' ':' $'\n'; do
     mv "$checkout" "$scratch/a${mark}b"
     checkout=$scratch/a${mark}b
-    call tools/evodevo operators
-    failed_in_a_line "$(printf %q "$checkout")" "move it"
+    fails_in_a_line "tools/evodevo operators" "$(printf %q "$checkout")" "move it"
     [ "$(times '^apt-get\|^cmake')" = 0 ] || fail "it sets something up first"
   done
 }

@@ -12,26 +12,20 @@
 #include "life/evaluation.hpp"
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
-#include "support/process.hpp"
+#include "support/program.hpp"
 #include "support/scratch.hpp"
 
 namespace evodevo::EVODEVO_FILE {
 namespace {
 
 namespace fs = std::filesystem;
-using ::testing::AllOf;
-using testing::Finished;
+using namespace testing;
 using ::testing::HasSubstr;
 using Json = nlohmann::ordered_json;
 
-Finished evodevo(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), EVODEVO_PROGRAM);
-  return testing::run(arguments);
-}
-
 /// Returns an experiment with rough ground, a payload and time steps that are not powers of two.
 std::string awkward_experiment() {
-  std::string text = testing::small_experiment;
+  std::string text = small_experiment;
   const auto replace = [&](const std::string& from, const std::string& to) {
     for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
       text.replace(at, from.size(), to);
@@ -78,29 +72,16 @@ void expect_same_bits(const Seen& seen, const State& state) {
 
 class Simulate : public ::testing::Test {
  protected:
-  testing::Scratch scratch_;
+  Scratch scratch_;
   std::string file_ = scratch_.write("two bodies (rough).toml", awkward_experiment());
   std::string folder_ = (scratch_ / "run").string();
   std::string csv_ = (scratch_ / "t.csv").string();
 
-  void run() {
-    const Finished finished = evodevo({"run", file_, "--out", folder_, "--set", "experiment.verify=0"});
-    ASSERT_EQ(finished.exit_code, 0) << finished.output;
-  }
-
-  /// Writes the output of a command to a file, and returns its path.
-  std::string printed(std::vector<std::string> arguments) {
-    const Finished finished = evodevo(std::move(arguments));
-    EXPECT_EQ(finished.exit_code, 0) << finished.output;
-    return scratch_.write("body.json", finished.output);
-  }
-
   /// Simulates a body for 14 steps, which is less than the time between two frames; returns the first and the last
   /// state.
-  std::pair<Seen, Seen> simulated(const std::string& body) {
-    const Finished finished = evodevo({"simulate", body, file_, "--duration", "0.0098", "--trajectory", csv_});
-    EXPECT_EQ(finished.exit_code, 0) << finished.output;
-    EXPECT_THAT(finished.output, HasSubstr("\nafter 0.0098 s the centre")) << "however old it was before";
+  std::pair<Seen, Seen> simulated(const std::string& json) {
+    const std::string told = simulate(json, {"--trajectory", csv_}, 0, "0.0098");
+    EXPECT_THAT(told, HasSubstr("\nafter 0.0098 s the centre")) << "however old it was before";
     const std::vector<Seen> frames = trajectory_in(csv_);
     EXPECT_EQ(frames.size(), 2u);
     return {frames.front(), frames.back()};
@@ -126,28 +107,28 @@ class Simulate : public ::testing::Test {
     return std::unique_ptr<Again>(new Again{*archive.individual(archive.best(1).at(0)), recorded_experiment(archive)});
   }
 
-  Finished simulate(const std::string& json, std::vector<std::string> more = {}) {
-    more.insert(more.begin(), {"simulate", scratch_.write("own.json", json), file_, "--duration", "0.1"});
-    return evodevo(more);
+  /// Simulates a body, expects the exit code, and returns the output.
+  std::string simulate(const std::string& json, const Words& more = {}, int exit_code = 0,
+                       const std::string& duration = "0.1") {
+    const Words words{"simulate", scratch_.write("own.json", json), file_, "--duration", duration};
+    return output_of(program(joined(words, more)), exit_code);
   }
+  std::string refusal(const std::string& json) { return simulate(json, {}, 2); }
 };
 
-TEST_F(Simulate, ANewbornLivesAsInItsRunUnderItsLoadAndOnItsGround) {
-  run();
-  const auto life = again();
-  const State born = life->lives.front().living.state;
-  const auto [first, last] = simulated(printed({"body", folder_}));
+TEST_F(Simulate, ABodyLivesAsInItsRunUnderItsLoadAndOnItsGroundNewbornOrMatured) {
+  said({"run", file_, "--out", folder_, "--set", "experiment.verify=0"});
+  const auto newborn = again();
+  const State born = newborn->lives.front().living.state;
+  const auto [first, last] = simulated(said({"body", folder_}));
   expect_same_bits(first, born);
-  expect_same_bits(last, life->go_on().living.state);
-}
+  expect_same_bits(last, newborn->go_on().living.state);
 
-TEST_F(Simulate, AMaturedBodyGoesOnAsInItsRun) {
-  run();
   const auto life = again();
   life->evaluation.development.run(life->lives, [](double) {});
   const LivingBody& matured = life->lives.front().living;
-  const std::string body = printed({"body", folder_, "--matured"});
-  const Json json = Json::parse(std::ifstream(body));
+  const std::string body = said({"body", folder_, "--matured"});
+  const Json json = Json::parse(body);
   EXPECT_EQ(json.at("time").get<double>(), matured.state.time);
   EXPECT_EQ(json.at("start_energy").get<double>(), matured.state.start_energy);
   double own = 0, written = 0;
@@ -155,17 +136,16 @@ TEST_F(Simulate, AMaturedBodyGoesOnAsInItsRun) {
   for (const Json& mass : json.at("masses")) written += mass.at("mass").get<double>();
   EXPECT_EQ(written, own) << "its load is on it and comes on it only once";
   const State before = matured.state;
-  const auto [first, last] = simulated(body);
-  expect_same_bits(first, before);
+  const auto [matured_first, matured_last] = simulated(body);
+  expect_same_bits(matured_first, before);
   EXPECT_THAT(before.velocity, ::testing::Contains(::testing::Ne(Vec3{})));
-  expect_same_bits(last, life->go_on().living.state);
+  expect_same_bits(matured_last, life->go_on().living.state);
 }
 
 TEST_F(Simulate, ABodyThatGrewInAnotherSceneGoesOnToo) {
-  const Finished grown = evodevo({"environments", file_, "--starts", "1", "--json"});
-  ASSERT_EQ(grown.exit_code, 0) << grown.output;
-  const Json body = Json::parse(grown.output).at(0).at("scenes").at(0).at("starts").at(0).at("body");
-  const auto [first, last] = simulated(scratch_.write("grown.json", body.dump()));
+  const Json grown = Json::parse(said({"environments", file_, "--starts", "1", "--json"}));
+  const Json body = grown.at(0).at("scenes").at(0).at("starts").at(0).at("body");
+  const auto [first, last] = simulated(body.dump());
   EXPECT_EQ(first.time, 2 * 0.049);
   EXPECT_EQ(first.position[3].x, body.at("masses").at(3).at("position").at(0).get<double>());
   EXPECT_EQ(first.velocity[3].z, body.at("masses").at(3).at("velocity").at(2).get<double>());
@@ -191,10 +171,7 @@ std::string tetrahedron(const std::string& mass, double stiffness, const std::st
 
 TEST_F(Simulate, ABodyIsBornOnTheGroundHoweverHighItLies) {
   for (const double z : {-0.4, 0.0, 7.3}) {
-    const std::string body = scratch_.write("own.json", tetrahedron("0.2", 500, "", "", z));
-    const Finished finished = evodevo(
-        {"simulate", body, file_, "--duration", "0.1", "--trajectory", csv_, "--set", "scene.floor.roughness=0.5"});
-    ASSERT_EQ(finished.exit_code, 0) << finished.output;
+    simulate(tetrahedron("0.2", 500, "", "", z), {"--trajectory", csv_, "--set", "scene.floor.roughness=0.5"});
     Scene scene;
     scene.floor = Floor{};
     scene.floor->roughness = 0.5, scene.floor->wavelength = 0.7;
@@ -209,55 +186,33 @@ TEST_F(Simulate, ABodyIsBornOnTheGroundHoweverHighItLies) {
 }
 
 TEST_F(Simulate, AStateInsideTheGroundIsInvalid) {
-  const auto at = [&](double z) { return simulate(tetrahedron("0.2", 500, "", R"(, "time": 1.5)", z)); };
-  const Finished deep = at(-0.4);
-  EXPECT_EQ(deep.exit_code, 2);
-  EXPECT_THAT(deep.output, AllOf(HasSubstr("own.json: invalid: "), HasSubstr("ground"), HasSubstr(" J"),
-                                 HasSubstr("leave out \"time\"")));
-  EXPECT_EQ(at(0.5).exit_code, 0) << "it falls";
+  const auto at = [&](double z) { return tetrahedron("0.2", 500, "", R"(, "time": 1.5)", z); };
+  EXPECT_THAT(refusal(at(-0.4)), naming("own.json: invalid: ", "ground", " J", "leave out \"time\""));
+  simulate(at(0.5));  // it falls
 }
 
-TEST_F(Simulate, TheStepIsJudgedByTheBodysOwnMassesAndMaterials) {
-  const std::vector<std::string> too_light_an_encoding = {"--set", "encoding.mass=0.002"};
-  EXPECT_EQ(evodevo({"check", file_, "--set", "encoding.mass=0.002"}).exit_code, 2);
-  EXPECT_EQ(simulate(tetrahedron("0.5", 500), too_light_an_encoding).exit_code, 0)
-      << "no mass of this body is that light";
-  EXPECT_EQ(simulate(tetrahedron("0.5", 500), {"--set", "materials.bone.stiffness=1e9"}).exit_code, 0)
-      << "nothing of this body is bone";
-  const Finished stiff = simulate(tetrahedron("0.5", 2e7)), light = simulate(tetrahedron("0.002", 500));
-  EXPECT_EQ(stiff.exit_code, 2);
-  EXPECT_THAT(stiff.output,
-              AllOf(HasSubstr("invalid: unstable dt: 0.0007 s"), HasSubstr("springs"), HasSubstr("simulation.dt")));
-  EXPECT_EQ(light.exit_code, 2);
-  EXPECT_THAT(light.output, HasSubstr("lightest mass"));
-}
+TEST_F(Simulate, TheStepIsJudgedByTheBodysOwnMassesAndMaterialsUnlessTheFileAsksForWhatIsUnstable) {
+  const Words light_encoding{"--set", "encoding.mass=0.002"}, unstable{"--set", "simulation.unstable=run"};
+  testing::refusal(joined({"check", file_}, light_encoding));
+  simulate(tetrahedron("0.5", 500), light_encoding);                             // no mass of this body is that light
+  simulate(tetrahedron("0.5", 500), {"--set", "materials.bone.stiffness=1e9"});  // nothing of this body is bone
+  EXPECT_THAT(refusal(tetrahedron("0.5", 2e7)), naming("invalid: unstable dt: 0.0007 s", "springs", "simulation.dt"));
+  EXPECT_THAT(refusal(tetrahedron("0.002", 500)), HasSubstr("lightest mass"));
 
-TEST_F(Simulate, ABodyThatDivergesIsAFailure) {
-  const Finished finished = simulate(tetrahedron("0.5", 2e7), {"--set", "simulation.unstable=run"});
-  EXPECT_EQ(finished.exit_code, 1);
-  EXPECT_THAT(finished.output, HasSubstr("diverged after "));
-}
-
-TEST_F(Simulate, WhatIsUnstableRunsWhereTheFileAsksForIt) {
-  const std::vector<std::string> run = {"--set", "simulation.unstable=run"};
-  const Finished light = simulate(tetrahedron("0.002", 500), run);
-  EXPECT_THAT(light.output, testing::naming("4 masses, 6 springs", "cpu")) << "whatever becomes of it";
-  std::vector<std::string> of_encoding = run;
-  of_encoding.insert(of_encoding.end(), {"--set", "encoding.mass=0.002"});
-  EXPECT_EQ(simulate(tetrahedron("0.5", 500), of_encoding).exit_code, 0);
-  of_encoding.insert(of_encoding.begin(), {"check", file_});
-  EXPECT_EQ(evodevo(of_encoding).exit_code, 0) << "nor does the experiment refuse what it asks for";
+  EXPECT_THAT(simulate(tetrahedron("0.5", 2e7), unstable, 1), HasSubstr("diverged after "));
+  const std::string light = scratch_.write("light.json", tetrahedron("0.002", 500));
+  EXPECT_THAT(testing::evodevo(joined({"simulate", light, file_, "--duration", "0.1"}, unstable)).output,
+              naming("4 masses, 6 springs", "cpu"))
+      << "whatever becomes of it";
+  simulate(tetrahedron("0.5", 500), joined(unstable, light_encoding));
+  said(joined(joined({"check", file_}, unstable), light_encoding));
 }
 
 TEST_F(Simulate, OnlyALifeUnderWayHasVelocities) {
   const std::string velocity = R"(, "velocity": [0, 1.5, 0])";
-  const Finished newborn = simulate(tetrahedron("0.2", 500, velocity));
-  EXPECT_EQ(newborn.exit_code, 2);
-  EXPECT_THAT(newborn.output, AllOf(HasSubstr("masses[0].velocity"), HasSubstr("\"time\"")));
-  const std::string body = scratch_.write("thrown.json", tetrahedron("0.2", 500, velocity, R"(, "time": 0)", 3));
-  const Finished thrown = evodevo({"simulate", body, file_, "--duration", "0.1", "--trajectory", csv_, "--set",
-                                   "scene={gravity={}}", "--set", "simulation.precision=double"});
-  ASSERT_EQ(thrown.exit_code, 0) << thrown.output;
+  EXPECT_THAT(refusal(tetrahedron("0.2", 500, velocity)), naming("masses[0].velocity", "\"time\""));
+  simulate(tetrahedron("0.2", 500, velocity, R"(, "time": 0)", 3),
+           {"--trajectory", csv_, "--set", "scene={gravity={}}", "--set", "simulation.precision=double"});
   Vec3 moved;
   const std::vector<Seen> frames = trajectory_in(csv_);
   for (std::size_t i = 0; i < 4; ++i) moved = moved + 0.25 * (frames.back().position[i] - frames.front().position[i]);
@@ -265,51 +220,58 @@ TEST_F(Simulate, OnlyALifeUnderWayHasVelocities) {
   EXPECT_NEAR(moved.z, -9.81 / 2 * 0.01, 1e-3);
 }
 
-TEST_F(Simulate, KeysThatAreUnknownOrStandTwiceAreRefused) {
-  const auto refusal = [&](const std::string& json) {
-    const Finished finished = simulate(json);
-    EXPECT_EQ(finished.exit_code, 2) << json;
-    EXPECT_EQ(std::count(finished.output.begin(), finished.output.end(), '\n'), 1) << finished.output;
-    EXPECT_LT(finished.output.size(), 600u);
-    for (const char c : finished.output) EXPECT_TRUE(c == '\n' || static_cast<unsigned char>(c) >= ' ') << json;
-    return finished.output;
+TEST_F(Simulate, FaultyBodiesAreRefusedByPlaceInOneCleanLine) {
+  const auto body = [](const std::string& mass_more, const std::string& rest = "") {
+    return tetrahedron("0.2", 500, mass_more, rest);
   };
-  EXPECT_THAT(refusal(tetrahedron("0.2", 500, R"(, "velocty": [0, 0, 0])")),
-              AllOf(HasSubstr("masses[0].velocty"), HasSubstr("did you mean \"velocity\"?")));
-  EXPECT_THAT(refusal(tetrahedron("0.2", 500, "", R"(, "colour": "red")")),
-              AllOf(HasSubstr("colour: "), HasSubstr("known: ")));
-  EXPECT_THAT(refusal(tetrahedron("0.2", 500, R"(, "mass": 0.3)")),
-              AllOf(HasSubstr("masses[0].mass"), HasSubstr("twice")));
-  EXPECT_THAT(refusal(tetrahedron("0.2", 500, "", R"(, "masses": [])")),
-              AllOf(HasSubstr("masses: "), HasSubstr("twice")));
-  EXPECT_THAT(refusal(tetrahedron("0.2", 500, "", R"(, "\u001b[31mred": 1)")), HasSubstr("\\u001b[31mred"));
-  EXPECT_THAT(refusal(tetrahedron("0.2", 500, "", ", \"" + std::string(5000, 'k') + "\": 1")), HasSubstr("kkk..."));
-  EXPECT_THAT(refusal(tetrahedron("0.2", 500, "", ", \"time\": " + std::string(100000, '['))), HasSubstr("levels"));
-  EXPECT_THAT(refusal(tetrahedron("0.2", 500, "", R"(, "time": -1)")), AllOf(HasSubstr("time"), HasSubstr("-1")));
-  EXPECT_THAT(refusal("[1]"), testing::naming("object"));
-}
-
-TEST_F(Simulate, ADurationBelowAStepIsRefused) {
-  const std::string body = scratch_.write("own.json", tetrahedron("0.2", 500));
-  const Finished finished = evodevo({"simulate", body, file_, "--duration", "0.0003"});
-  EXPECT_EQ(finished.exit_code, 2);
-  EXPECT_THAT(finished.output, AllOf(HasSubstr("--duration 0.0003"), HasSubstr("0.0007 s")));
+  const std::string masses = R"("masses": [{"position": [0,0,0], "mass": 1}, {"position": [1,0,0], "mass": 1}])";
+  const std::string materials = R"({"materials": [{"stiffness": 1, "amplitude": 0, "frequency": 0, "phase": 0}], )";
+  struct Case {
+    std::string json, place, remedy;
+  };
+  for (const auto& [json, place, remedy] : std::vector<Case>{
+           {body(R"(, "velocty": [0, 0, 0])"), ": masses[0].velocty", "did you mean \"velocity\"?"},
+           {body("", R"(, "colour": "red")"), ": colour: ", "known: "},
+           {body(R"(, "mass": 0.3)"), ": masses[0].mass", "twice"},
+           {body("", R"(, "masses": [])"), ": masses: ", "twice"},
+           {body("", R"(, "\u001b[31mred": 1)"), ": ", "\\u001b[31mred"},
+           {body("", ", \"" + std::string(5000, 'k') + "\": 1"), ": ", "kkk..."},
+           {body("", ", \"time\": " + std::string(100000, '[')), ": ", "levels"},
+           {std::string(100'000, '[') + std::string(100'000, ']'), ": ", "16 levels"},
+           {body("", R"(, "time": -1)"), ": time", "-1"},
+           {"[1]", ": ", "object"},
+           {"{", ": ", "JSON"},
+           {"{\x1b\n\xff", ": ", "<U+001B>"},
+           {"{}", ": ", "\"materials\""},
+           {materials + R"("masses": [{"position": [0,0], "mass": 1}], "springs": []})",
+            ": masses[0].position: ", "three numbers"},
+           {materials + R"("masses": [{"position": [0,0,0], "mass": -1}], "springs": []})",
+            ": masses[0].mass: ", "-1 is out of range; expected at least"},
+           {materials + masses + R"(, "springs": [{"a": 0, "b": 2, "rest_length": 1, "material": 0}]})",
+            ": springs[0].b: ", "2 is not a valid index"},
+           {materials + masses +
+                R"(, "springs": [{"a": 0, "b": 1, "rest_length": 1, "material": 0, "stiffness_factor": 0}]})",
+            ": springs[0].stiffness_factor: ", "0"}}) {
+    const std::string output = refusal(json);
+    EXPECT_THAT(output, at_place("evodevo: " + (scratch_ / "own.json").string() + place, remedy));
+    EXPECT_EQ(std::count(output.begin(), output.end(), '\n'), 1) << output;
+    EXPECT_LT(output.size(), 600u);
+    for (const char c : output) EXPECT_TRUE(c == '\n' || static_cast<unsigned char>(c) >= ' ') << output;
+  }
+  EXPECT_THAT(simulate(tetrahedron("0.2", 500), {}, 2, "0.0003"), naming("--duration 0.0003", "0.0007 s"));
 }
 
 TEST_F(Simulate, ATrajectoryNeverTakesThePlaceOfWhatIsRead) {
-  const std::string text = tetrahedron("0.2", 500), body = scratch_.write("own body.json", text);
+  const std::string body = scratch_.write("own body.json", tetrahedron("0.2", 500));
   const std::string soft = (scratch_ / "soft.csv").string(), hard = (scratch_ / "hard.csv").string();
   const std::string roundabout = (scratch_ / "." / "run" / ".." / "own body.json").string();
   fs::create_directory(folder_);
   fs::create_symlink(body, soft);
   fs::create_hard_link(file_, hard);
-  for (const std::string& csv : {body, file_, soft, hard, roundabout}) {
-    const Finished finished = evodevo({"simulate", body, file_, "--duration", "0.1", "--trajectory", csv});
-    EXPECT_EQ(finished.exit_code, 2) << csv;
-    EXPECT_THAT(finished.output, AllOf(HasSubstr("--trajectory " + csv), HasSubstr("name another file")));
-  }
-  EXPECT_EQ(evodevo({"simulate", body, file_, "--duration", "0.1", "--trajectory", csv_}).exit_code, 0)
-      << "and both are what they were";
+  const Words words{"simulate", body, file_, "--duration", "0.1", "--trajectory"};
+  for (const std::string& csv : {body, file_, soft, hard, roundabout})
+    EXPECT_THAT(testing::refusal(joined(words, {csv})), naming("--trajectory " + csv, "name another file"));
+  said(joined(words, {csv_}));  // and both are what they were
 }
 
 }  // namespace

@@ -50,22 +50,18 @@ class Scratch(unittest.TestCase):
 
 
 class Bodies(unittest.TestCase):
-    def test_materials_are_told_apart(self):
-        colours = [bodies.colour({"amplitude": a, "phase": phase}) for a, phase in ((0, 0), (0.1, 0), (0.1, 3.14))]
-        self.assertEqual(colours, [bodies.GREY, bodies.RED, bodies.BLUE])
-
-    def test_springs_are_seen_from_the_side(self):
+    def test_are_seen_from_the_side_in_the_colours_of_their_materials(self):
         places = [mass["position"] for mass in BODY["masses"]]
         segments = [segment.tolist() for segment in bodies.springs(BODY, places, 2).get_segments()]
         self.assertEqual(segments, [[[2, 0], [3, 0]], [[3, 0], [2, 1]]])
+        colours = [bodies.colour({"amplitude": a, "phase": phase}) for a, phase in ((0, 0), (0.1, 0), (0.1, 3.14))]
+        self.assertEqual(colours, [bodies.GREY, bodies.RED, bodies.BLUE])
 
 
 class Environments(Scratch):
-    def test_captions_tell_the_distance_from_the_first(self):
+    def test_each_scene_has_its_place_and_so_have_the_distances(self):
         lines = environments.captions(ANSWER)
         self.assertEqual(lines, [[], ["springs 0.300 (noise 0.100, p = 0.0020)", "mass 0.020"], []])
-
-    def test_each_scene_has_its_place_and_so_have_the_distances(self):
         file = self.folder / "environments.json"
         file.write_text(json.dumps([ANSWER, ANSWER | {"pairs": []}]))
         panels = [axes for axes in environments.figure(file).axes if axes.get_visible()]
@@ -94,7 +90,6 @@ class Run(Scratch):
         for time in run.TIMES:
             self.assertIn(f"{time:g} s", texts)
         self.assertIn("distance (body lengths)", texts)
-
 
     def test_an_experiment_that_says_nothing_of_settling_is_refused_in_a_line(self):
         experiment = self.folder / "short.toml"

@@ -27,19 +27,13 @@ const std::vector<Column>& all_columns() {
 
 /// Binds the value that comes next in an input.
 void bind_value(SQLite::Statement& update, Input& input) {
-  switch (input.below(5)) {
-    case 0:
-      return update.bind(1);  // NULL
-    case 1:
-      return update.bind(1, input.number<std::int64_t>());
-    case 2:
-      return update.bind(1, input.number<double>());
-    case 3:
-      return update.bind(1, std::string(input.text()));
-    default:
-      const std::string_view bytes = input.text();
-      return update.bind(1, bytes.data(), static_cast<int>(bytes.size()));
-  }
+  const std::size_t type = input.below(5);
+  if (type == 0) return update.bind(1);  // NULL
+  if (type == 1) return update.bind(1, input.number<std::int64_t>());
+  if (type == 2) return update.bind(1, input.number<double>());
+  const std::string_view bytes = input.text();
+  if (type == 3) return update.bind(1, std::string(bytes));
+  update.bind(1, bytes.data(), static_cast<int>(bytes.size()));
 }
 
 void change_record(Input input) {

@@ -102,32 +102,19 @@ class Fuzzed final : public Fitness {
   static void declare(Parameters& p, Declared& one) {
     Range range = one.range;
     range.unit = one.unit;
-    switch (one.type) {
-      case 0:
-        return p.real(one.real, one.name, range, one.text);
-      case 1:
-        return p.integer(one.integer, one.name, range, one.text);
-      case 2:
-        return p.flag(one.flag, one.name, one.text);
-      case 3:
-        return p.choice(one.option, one.name, {one.options[0], one.options[1], one.options[2]}, one.text);
-      case 4:
-        return p.vector(one.vector, one.name, range, one.text);
-      case 5:
-        return p.counts(one.counts, one.name, range, one.text);
-      case 6:
-        return p.optional_real(one.optional_real, one.name, range, one.text);
-      case 7:
-        return p.reals(one.reals, one.name, range, one.text);
-      case 8:
-        return p.text(one.words, one.name, one.text);
-      case 9:
-        return p.file(one.file, one.name, one.text);
-      case 10:
-        return p.materials(one.materials, one.name, one.text);
-      default:
-        return p.require(one.flag, one.name, one.text);
-    }
+    if (one.type == 0) return p.real(one.real, one.name, range, one.text);
+    if (one.type == 1) return p.integer(one.integer, one.name, range, one.text);
+    if (one.type == 2) return p.flag(one.flag, one.name, one.text);
+    if (one.type == 3)
+      return p.choice(one.option, one.name, {one.options[0], one.options[1], one.options[2]}, one.text);
+    if (one.type == 4) return p.vector(one.vector, one.name, range, one.text);
+    if (one.type == 5) return p.counts(one.counts, one.name, range, one.text);
+    if (one.type == 6) return p.optional_real(one.optional_real, one.name, range, one.text);
+    if (one.type == 7) return p.reals(one.reals, one.name, range, one.text);
+    if (one.type == 8) return p.text(one.words, one.name, one.text);
+    if (one.type == 9) return p.file(one.file, one.name, one.text);
+    if (one.type == 10) return p.materials(one.materials, one.name, one.text);
+    p.require(one.flag, one.name, one.text);
   }
 
   std::vector<Declared> parameters_ = present().parameters;

@@ -1,11 +1,10 @@
 // The GPU gives the same results as the CPU, up to rounding. The runs are so short that rounding errors do not grow
 // much.
-#include "analysis/energy.hpp"
-#include "analysis/ground.hpp"
 #include "analysis/stability.hpp"
 #include "base/philox.hpp"
 #include "core/skip_shift.hpp"
 #include "gpu.hpp"
+#include "physics/random_lives.hpp"
 
 namespace evodevo::testing_gpu::EVODEVO_FILE {
 namespace {
@@ -14,8 +13,7 @@ namespace {
 /// resolution of float32 is 1e-7 m. A mass that touches the floor one step earlier or later amplifies earlier rounding;
 /// so does a mass that lands on a rigid floor or begins to slide in another step. With `implicit`, masses on a rigid
 /// floor also have the residual of the solver, which depends on the rounding of its sums.
-double bound(const Way& way, const Scene& scene) {
-  const bool single = std::get<Precision>(way) == Precision::float32;
+double bound(bool single, const Scene& scene) {
   if (!scene.floor) return single ? 5e-5 : 1e-13;
   const bool sticks = scene.friction && scene.friction->static_coefficient;
   if (single) return sticks || scene.floor->rigid() ? 1e-2 : 3e-3;
@@ -44,80 +42,37 @@ std::vector<Case> cases() {
        {Gravity{9.81, 12}, Floor{.roughness = 0.05, .restitution = 0.3}, Friction{0.4, 0.8}, Damping{}, Drag{0.5}}}};
 }
 
-class AgreementOfPlaces : public ::testing::TestWithParam<std::tuple<Case, Way>> {};
+class AgreementOfPlaces : public ::testing::TestWithParam<std::tuple<Case, test::Arithmetic>> {};
 
 TEST_P(AgreementOfPlaces, After200Steps) {
   EVODEVO_NEEDS_GPU();
-  const auto& [scene, way] = GetParam();
+  const auto& [of_name, scene] = std::get<Case>(GetParam());
+  const auto [method, precision] = std::get<test::Arithmetic>(GetParam());
   const Body body = random_body(300, 20, 7);
-  const State start = moving_state(body, scene.scene, 8);
+  const State start = moving_state(body, scene, 8);
   Robot cpu(body, start), gpu(body, start);
-  simulate(*make_cpu_simulator(scene.scene, stepping(way), 1), {&cpu}, 200);
-  simulate(*make_cuda_simulator(scene.scene, stepping(way)), {&gpu}, 200);
+  simulate(*make_cpu_simulator(scene, {method, precision}, 1), {&cpu}, 200);
+  simulate(*make_cuda_simulator(scene, {method, precision}), {&gpu}, 200);
   ASSERT_EQ(cpu.answer.status, Status::ok) << cpu.answer.reason;
   ASSERT_EQ(gpu.answer.status, Status::ok) << gpu.answer.reason;
   EXPECT_DOUBLE_EQ(gpu.state.time, 0.1);
   EXPECT_GT(distance(cpu.state, start), 0.01);
-  const double off = distance(cpu.state, gpu.state);
-  std::printf("           off by %.3g m\n", off);
-  EXPECT_LT(off, bound(way, scene.scene));
+  EXPECT_LT(distance(cpu.state, gpu.state), bound(precision == Precision::float32, scene));
 }
 
 INSTANTIATE_TEST_SUITE_P(Gpu, AgreementOfPlaces, ::testing::Combine(::testing::ValuesIn(cases()), all_ways()),
                          [](const auto& test) {
-                           return std::string(std::get<Case>(test.param).name) + "_" + name(std::get<Way>(test.param));
+                           return std::string(std::get<Case>(test.param).name) + "_" +
+                                  test::name_of(std::get<test::Arithmetic>(test.param));
                          });
-
-class AgreementOfRecords : public ::testing::TestWithParam<Way> {};
-
-TEST_P(AgreementOfRecords, StressAndWorkOf150Steps) {
-  EVODEVO_NEEDS_GPU();
-  const Way way = GetParam();
-  const Scene scene{Gravity{}, Floor{}, Friction{}, Damping{}, Drag{0.5}};
-  const Body body = random_body(300, 20, 9);
-  const State start = moving_state(body, scene, 10);
-  Robot cpu(body, start), gpu(body, start), plain(body, start);
-  const auto simulator = make_cuda_simulator(scene, stepping(way));
-  const Recording all{.stress = true, .work = true, .peak_force = true, .muscle_work = true, .tension = true};
-  simulate(*make_cpu_simulator(scene, stepping(way), 1), {&cpu}, 150, all);
-  simulate(*simulator, {&gpu}, 150, all);
-  simulate(*simulator, {&plain}, 150);
-  // recording does not change the motion
-  EXPECT_EQ(distance(gpu.state, plain.state), 0);
-  for (const auto list : SpringRecords::lists) ASSERT_EQ((gpu.answer.*list).size(), body.springs.size());
-  double largest = 0, largest_peak = 0, mean = 0, sum = 0;
-  for (std::size_t i = 0; i < body.springs.size(); ++i) {
-    largest = std::max({largest, std::abs(gpu.answer.stress[i] - cpu.answer.stress[i]),
-                        std::abs(gpu.answer.tension[i] - cpu.answer.tension[i])});
-    largest_peak = std::max(largest_peak, std::abs(gpu.answer.peak_force[i] - cpu.answer.peak_force[i]));
-    mean += cpu.answer.stress[i] / static_cast<double>(body.springs.size());
-    sum += gpu.answer.muscle_work[i];
-    EXPECT_LE(std::abs(gpu.answer.tension[i]), gpu.answer.stress[i] * 1.0001) << i;
-    EXPECT_GE(gpu.answer.peak_force[i] * 1.0001, gpu.answer.stress[i]) << i;
-  }
-  std::printf("           stress off by %.3g N of %.3g N, work by %.3g J of %.3g J\n", largest, mean,
-              std::abs(gpu.answer.work - cpu.answer.work), cpu.answer.work);
-  EXPECT_GT(cpu.answer.work, 0);
-  const double accuracy = bound(way, scene);
-  // tolerances, N; observed deviations are at most 0.2 in float32 and 6e-9 in float64, except where one contact begins
-  // a step later
-  const bool late_touch = way == Way{Method::symplectic_euler, Precision::float64};
-  EXPECT_LT(largest, std::get<Precision>(way) == Precision::float32 ? 3 : late_touch ? 1e-3 : 3e-5);
-  EXPECT_LT(largest_peak, std::get<Precision>(way) == Precision::float32 ? 60 : 1e-1);
-  EXPECT_NEAR(gpu.answer.work, cpu.answer.work, 10 * accuracy * cpu.answer.work);
-  EXPECT_NEAR(sum, gpu.answer.work, (std::get<Precision>(way) == Precision::float32 ? 1e-5 : 1e-12) * sum);
-}
-
-INSTANTIATE_TEST_SUITE_P(Gpu, AgreementOfRecords, all_ways(), [](const auto& test) { return name(test.param); });
 
 TEST(AgreementOfTallies, InFloat64) {
   EVODEVO_NEEDS_GPU();
   const Scene scene{Gravity{}, {}, {}, Damping{}, {}};
   const Body body = random_body(300, 20, 9);
   const Stepping stepping{Method::paper_euler, Precision::float64};
-  const State start = moving_state(body, scene, 10);
   const auto tallied = [&](Simulator& simulator) {
-    State state = start;
+    State state = moving_state(body, scene, 10);
     Task task{.body = &body, .state = &state, .steps = 150};
     Rng random(philox, {1, 2, 3, 4});
     run_with_tallies(simulator, {&task, 1}, 10, {&random, 1});
@@ -147,37 +102,30 @@ TEST_P(AgreementOfLargeSteps, After100Steps) {
   ASSERT_EQ(cpu.answer.status, Status::ok) << cpu.answer.reason;
   ASSERT_EQ(gpu.answer.status, Status::ok) << gpu.answer.reason;
   EXPECT_GT(distance(cpu.state, start), 0.01);
-  const double off = distance(cpu.state, gpu.state);
-  std::printf("           off by %.3g m\n", off);
-  EXPECT_LT(off, 1e-6);
+  EXPECT_LT(distance(cpu.state, gpu.state), 1e-6);
 }
 
-INSTANTIATE_TEST_SUITE_P(Gpu, AgreementOfLargeSteps, ::testing::Values(Method::implicit, Method::xpbd),
-                         [](const auto& test) { return std::string(evodevo::name(test.param)); });
+INSTANTIATE_TEST_SUITE_P(Gpu, AgreementOfLargeSteps, ::testing::Values(Method::implicit, Method::xpbd), named);
 
-/// A thrown mass, whose positions must equal the closed-form solution of each method's steps.
-class FreeFall : public ::testing::TestWithParam<Way> {};
+class AgreementOfRandomLives : public EachWayOnGpu {};
 
-TEST_P(FreeFall, IsThatOfTheMethod) {
-  EVODEVO_NEEDS_GPU();
-  const Scene scene{Gravity{}, {}, {}, {}, {}};
-  Body body;
-  body.masses = {{{0, 0, 0}, 0.2}};
-  State start = state_at_birth(body, scene);
-  start.position[0].z = 4;
-  start.velocity[0] = {3, 0, 4};
-  start.start_energy = total_energy(body, start, scene);
-  Robot run(body, start);
-  simulate(*make_cuda_simulator(scene, stepping(GetParam())), {&run}, 1000);
-  const auto [method, precision] = GetParam();
-  // methods with x <- x + dt v and the new v fall g t dt / 2 further than g t^2 / 2; the other methods are exact
-  const double t = 0.5, further = method == Method::velocity_verlet || method == Method::rk4 ? 0 : 0.0005;
-  const double rounding = precision == Precision::float32 ? 1e-4 : 1e-12;
-  EXPECT_NEAR(run.state.position[0].z, 4 + 4 * t - 9.81 * t * (t + further) / 2, rounding);
-  EXPECT_NEAR(run.state.position[0].x, 3 * t, rounding);
+INSTANTIATE_TEST_SUITE_P(Gpu, AgreementOfRandomLives, all_ways(), named);
+
+TEST_P(AgreementOfRandomLives, In16RandomScenes) {
+  for (std::uint64_t seed = 0; seed < 16; ++seed) {
+    SCOPED_TRACE("random_scene(" + std::to_string(seed) + ")");
+    const Scene scene = test::random_scene(seed);
+    const std::vector<test::Life> lives = test::random_lives(scene, seed, 64);
+    const std::vector<test::Answer> on_cpu = test::simulate(*cpu(scene, 0), lives);
+    const std::vector<test::Answer> on_gpu = test::simulate(*gpu(scene), lives);
+    for (std::size_t i = 0; i < lives.size(); ++i) {
+      SCOPED_TRACE("the life of seed " + std::to_string(lives[i].seed));
+      EXPECT_EQ(on_gpu[i].task.status, Status::ok) << on_gpu[i].task.reason;
+      // about ten times the deviations observed
+      EXPECT_LT(distance(on_cpu[i].state, on_gpu[i].state), single() ? 1e-2 : 1e-9);
+    }
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(Gpu, FreeFall, all_ways(), [](const auto& test) { return name(test.param); });
 
 }  // namespace
 }  // namespace evodevo::testing_gpu::EVODEVO_FILE

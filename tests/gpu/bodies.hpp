@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <random>
 #include <vector>
 
 #include "analysis/energy.hpp"
@@ -11,22 +10,13 @@
 #include "core/scene.hpp"
 #include "core/simulator.hpp"
 #include "evodevo/body.hpp"
+#include "physics/random_numbers.hpp"
 
 namespace evodevo::testing_gpu {
 
 inline constexpr double pi = 3.14159265358979323846;
 
-/// Random numbers that are the same with every standard library.
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : generator_(seed) {}
-  /// Returns a number in [-1, 1).
-  double next() { return static_cast<double>(generator_() >> 11) * 0x1p-52 - 1; }
-  Vec3 vector() { return {next(), next(), next()}; }
-
- private:
-  std::mt19937_64 generator_;
-};
+using test::Random;
 
 /// The paper's materials (Table I) without air.
 inline std::vector<Material> paper_materials() {
@@ -42,8 +32,8 @@ inline Body random_body(std::uint32_t masses, std::uint32_t neighbours, std::uin
   body.materials = std::move(materials);
   std::vector<Vec3> places;
   for (std::uint32_t i = 0; i < masses; ++i) {
-    places.push_back(random.vector());
-    body.masses.push_back({places.back(), 0.2 + 0.05 * random.next()});
+    places.push_back(random.vector(1));
+    body.masses.push_back({places.back(), 0.2 + 0.05 * random.between(-1, 1)});
   }
   for (const auto& [a, b] : nearest_pairs(places, neighbours)) {
     const auto material = static_cast<std::uint32_t>(body.springs.size() % body.materials.size());
@@ -72,7 +62,7 @@ inline Body body_in_pieces(const Body& piece) {
 inline State moving_state(const Body& body, const Scene& scene, std::uint64_t seed) {
   Random random(seed);
   State state = state_at_birth(body, scene);
-  for (Vec3& velocity : state.velocity) velocity = 0.5 * random.vector();
+  for (Vec3& velocity : state.velocity) velocity = 0.5 * random.vector(1);
   state.start_energy = total_energy(body, state, scene);
   return state;
 }
@@ -91,11 +81,18 @@ struct Robot {
 };
 
 /// Simulates all bodies in one batch.
-inline void simulate(Simulator& simulator, std::vector<Robot*> runs, std::uint64_t steps, Recording recording = {}) {
+inline void simulate(Simulator& simulator, const std::vector<Robot*>& runs, std::uint64_t steps,
+                     Recording recording = {}) {
   std::vector<Task> tasks;
   for (Robot* run : runs) tasks.push_back(run->task(steps));
   simulator.run(tasks, recording);
   for (std::size_t i = 0; i < runs.size(); ++i) runs[i]->answer = tasks[i];
+}
+
+inline void simulate(Simulator& simulator, std::vector<Robot>& robots, std::uint64_t steps, Recording recording = {}) {
+  std::vector<Robot*> runs;
+  for (Robot& robot : robots) runs.push_back(&robot);
+  simulate(simulator, runs, steps, recording);
 }
 
 /// Returns the largest distance between the positions of any mass in two states, m.

@@ -1,6 +1,7 @@
 // A body gets the same bits whether a block or a cluster of blocks simulates it. A body alone gets a large cluster;
 // many bodies share the device.
 #include "gpu.hpp"
+#include "physics/cases.hpp"
 
 namespace evodevo::testing_gpu::EVODEVO_FILE {
 namespace {
@@ -8,8 +9,8 @@ namespace {
 const Recording order_free{.stress = true, .work = false, .peak_force = true, .muscle_work = false, .tension = true};
 
 /// Compares a body that is alone with several that are simulated together, for each of the given numbers of bodies.
-void expect_same_bits(const Scene& scene, const Stepping& stepping, const Body& body,
-                      std::vector<std::size_t> numbers) {
+void expect_the_same_in_any_number(const Scene& scene, const Stepping& stepping, const Body& body,
+                                   std::vector<std::size_t> numbers) {
   const State start = moving_state(body, scene, 7);
   const auto simulator = make_cuda_simulator(scene, stepping);
   Robot alone(body, start);
@@ -17,43 +18,35 @@ void expect_same_bits(const Scene& scene, const Stepping& stepping, const Body& 
   simulate(*simulator, {&alone}, steps, order_free);
   EXPECT_EQ(alone.answer.status, Status::ok) << alone.answer.reason;
   for (const std::size_t number : numbers) {
+    SCOPED_TRACE(number);
     std::vector<Robot> robots(number, Robot(body, start));
-    std::vector<Robot*> all;
-    for (Robot& robot : robots) all.push_back(&robot);
-    simulate(*simulator, all, steps, order_free);
-    for (const Robot& robot : {robots.front(), robots.back()}) {
-      EXPECT_EQ(robot.state.position, alone.state.position) << number;
-      EXPECT_EQ(robot.state.velocity, alone.state.velocity) << number;
-      for (const auto list : SpringRecords::lists) EXPECT_EQ(robot.answer.*list, alone.answer.*list) << number;
-    }
+    simulate(*simulator, robots, steps, order_free);
+    for (const Robot& robot : {robots.front(), robots.back()}) expect_same_bits(robot, alone);
   }
 }
 
-class Clusters : public ::testing::TestWithParam<Way> {};
-
-TEST_P(Clusters, AnyNumberOfBlocksGivesTheSameBits) {
-  EVODEVO_NEEDS_GPU();
-  // on an H200 in single precision, clusters of 8, 5, 4, 3, 2 and 1 blocks
-  expect_same_bits(walking_scene(), stepping(GetParam()), random_body(1000, 20, 5), {12, 20, 28, 36, 60, 150});
-}
-
-TEST_P(Clusters, AlsoWithDashpots) {
-  EVODEVO_NEEDS_GPU();
+Body damped_body() {
   Body body = random_body(500, 20, 6);
   for (Material& material : body.materials) material.damping = 0.05;
-  expect_same_bits(walking_scene(), stepping(GetParam()), body, {28, 150});
+  return body;
+}
+
+class Clusters : public EachWayOnGpu {};
+
+TEST_P(Clusters, AnyNumberOfBlocksGivesTheSameBits) {
+  // on an H200 in single precision, clusters of 8, 5, 4, 3, 2 and 1 blocks
+  expect_the_same_in_any_number(walking_scene(), way(), random_body(1000, 20, 5), {12, 20, 28, 36, 60, 150});
+  expect_the_same_in_any_number(walking_scene(), way(), damped_body(), {28, 150});
 }
 
 TEST_P(Clusters, RecordsChangeNothingAndCountEverySpringOnce) {
-  EVODEVO_NEEDS_GPU();
   const Scene scene = walking_scene();
   const Body body = random_body(3000, 20, 8);
   const State start = moving_state(body, scene, 3);
-  const auto simulator = make_cuda_simulator(scene, stepping(GetParam()));
+  const auto simulator = gpu(scene);
   Robot plain(body, start), recorded(body, start);
   simulate(*simulator, {&plain}, 250, order_free);
-  simulate(*simulator, {&recorded}, 250,
-           {.stress = true, .work = true, .peak_force = true, .muscle_work = true, .tension = true});
+  simulate(*simulator, {&recorded}, 250, all_records);
   EXPECT_EQ(plain.state.position, recorded.state.position);
   EXPECT_EQ(plain.answer.stress, recorded.answer.stress);
   double work = 0;
@@ -61,27 +54,23 @@ TEST_P(Clusters, RecordsChangeNothingAndCountEverySpringOnce) {
   EXPECT_NEAR(work, recorded.answer.work, 1e-4 * std::abs(work)) << "whether it is cut or not";
 }
 
-INSTANTIATE_TEST_SUITE_P(Gpu, Clusters, explicit_ways(), [](const auto& test) { return name(test.param); });
+INSTANTIATE_TEST_SUITE_P(Gpu, Clusters, explicit_ways(), named);
 
-TEST(Clusters, ComputedMaterials) {
+TEST(ClustersWithoutWays, OfComputedMaterialsToo) {
   EVODEVO_NEEDS_GPU();
-  Stepping computed;
-  computed.materials = Materials::computed;
-  expect_same_bits(walking_scene(), computed, random_body(1000, 20, 5), {28, 150});
-  Body damped = random_body(500, 20, 6);
-  for (Material& material : damped.materials) material.damping = 0.05;
-  expect_same_bits(walking_scene(), computed, damped, {28, 150});
+  const Stepping computed{.materials = Materials::computed};
+  expect_the_same_in_any_number(walking_scene(), computed, random_body(1000, 20, 5), {28, 150});
+  expect_the_same_in_any_number(walking_scene(), computed, damped_body(), {28, 150});
 }
 
-TEST(Clusters, SamplesAndEnergiesDoNotDependOnTheNumberOfBlocks) {
+TEST(ClustersWithoutWays, SamplesAndEnergiesDoNotDependOnTheNumberOfBlocks) {
   EVODEVO_NEEDS_GPU();
-  const Scene falling{Gravity{}, std::nullopt, std::nullopt, Damping{}, std::nullopt};
+  const Scene falling{Gravity{}, {}, {}, Damping{}, {}};
   const Body body = random_body(900, 15, 4);
   const State start = moving_state(body, falling, 3);
   const Channels all{.centre = true, .box = true, .positions = true, .velocities = true, .forces = true};
   const auto ends = [&](unsigned largest_cluster) {
-    const auto simulator =
-        make_cuda_simulator(falling, stepping(Precision::float32), 0, default_portion, largest_cluster);
+    const auto simulator = make_cuda_simulator(falling, single_precision, 0, default_portion, largest_cluster);
     Robot robot(body, start);
     Task task = robot.task(12000);
     task.sampled_at = {{130, all}, {131, all}, {9000, all}, {12000, all}};
@@ -91,18 +80,12 @@ TEST(Clusters, SamplesAndEnergiesDoNotDependOnTheNumberOfBlocks) {
   };
   const auto [one, of_one] = ends(1);
   for (const unsigned blocks : {3u, 16u}) {
+    SCOPED_TRACE(blocks);
     const auto [several, of_several] = ends(blocks);
-    EXPECT_EQ(several.position, one.position) << blocks;
-    EXPECT_EQ(several.start_energy, one.start_energy) << blocks;
+    EXPECT_EQ(several.position, one.position);
+    EXPECT_EQ(several.start_energy, one.start_energy);
     ASSERT_EQ(of_several.size(), of_one.size());
-    for (std::size_t i = 0; i < of_one.size(); ++i) {
-      EXPECT_EQ(of_several[i].centre, of_one[i].centre) << blocks;
-      EXPECT_EQ(of_several[i].velocity, of_one[i].velocity) << blocks;
-      EXPECT_EQ(of_several[i].box.low, of_one[i].box.low) << blocks;
-      EXPECT_EQ(of_several[i].positions, of_one[i].positions) << blocks;
-      EXPECT_EQ(of_several[i].velocities, of_one[i].velocities) << blocks;
-      EXPECT_EQ(of_several[i].forces, of_one[i].forces) << blocks;
-    }
+    for (std::size_t i = 0; i < of_one.size(); ++i) test::expect_same_samples(of_several[i], of_one[i]);
   }
 }
 

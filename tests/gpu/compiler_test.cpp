@@ -11,12 +11,12 @@
 
 #include "cuda/layout/features.hpp"
 #include "cuda/runtime/cache.hpp"
+#include "machine_code.hpp"
 #include "paper/paper_simulator.hpp"
 #include "paper/sources.hpp"
 #include "paper/stress_methods.hpp"
 
 namespace evodevo::cuda::EVODEVO_FILE {
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -38,66 +38,97 @@ class Compiler : public ::testing::Test {
   fs::path cache_;
 };
 
-const Features every_feature{.gravity = true,
-                             .slope = true,
-                             .floor = true,
-                             .elastic = true,
-                             .rigid = true,
-                             .rough = true,
-                             .friction = true,
-                             .static_friction = true,
-                             .damping = true,
-                             .drag = true,
-                             .actuation = true,
-                             .dashpots = true,
-                             .stress = true,
-                             .work = true,
-                             .peak_force = true,
-                             .muscle_work = true,
-                             .tension = true};
+/// A feature, and the one that it is part of, or nullptr.
+struct Feature {
+  const char* name;
+  bool Features::*on;
+  bool Features::*whole;
+};
 
-/// Whether the kernels that simulate bodies of any size compile with the given features and method.
-bool compiles_streamed(const Features& features) {
-  const char* source =
-      is_explicit(features.method) ? "cuda/device/streamed/streamed.cu" : form_of(features.method).file;
-  return !compile(source, definitions(features), "sm_90").empty();
+constexpr std::nullptr_t always = nullptr;
+#define EVODEVO_FEATURE(name, whole) {#name, &Features::name, whole_##whole},
+#define EVODEVO_WHOLE(name, whole) constexpr bool Features::*whole_##name = &Features::name;
+constexpr bool Features::*whole_always = always;
+EVODEVO_FEATURES(EVODEVO_WHOLE)
+const std::vector<Feature> all_features{EVODEVO_FEATURES(EVODEVO_FEATURE)};
+
+Features with_every_feature() {
+  Features features;
+  for (const Feature& feature : all_features) features.*feature.on = true;
+  return features;
+}
+const Features every_feature = with_every_feature();
+
+Features without(const Feature& feature) {
+  Features features = every_feature;
+  features.*feature.on = false;
+  for (const Feature& part : all_features)  // a whole stands before its parts
+    if (part.whole != nullptr && !(features.*part.whole)) features.*part.on = false;
+  return features;
+}
+
+/// A form of a kernel: of a body on the chip if it has rows, otherwise of one that is streamed.
+struct Form {
+  const char* name;
+  ResidentForm resident;
+};
+
+const std::vector<Form> forms{
+    {"on the chip", {.rows = most_rows, .masses_per_thread = 1, .records_on_chip = true}},
+    {"springs streamed",
+     {.rows = rows_of_a_chunk, .masses_per_thread = 5, .chunked = true, .wide_offsets = true, .wide_table = true}},
+    {"in a cluster", {.rows = most_rows, .masses_per_thread = 2, .records_on_chip = true, .clustered = true}},
+    {"in a cluster, springs streamed",
+     {.rows = rows_of_a_chunk, .masses_per_thread = 5, .chunked = true, .wide_offsets = true, .clustered = true}},
+    {"streamed", {}}};
+
+std::vector<char> compiled(const Form& form, const Features& features, const char* architecture = "sm_90") {
+  if (form.resident.rows > 0)
+    return compile("cuda/device/resident.cu", definitions(features, form.resident), architecture);
+  return compile(is_explicit(features.method) ? "cuda/device/streamed/streamed.cu" : form_of(features.method).file,
+                 definitions(features), architecture);
 }
 
 TEST_F(Compiler, CompilesForGpusWithoutClustersAndForLaterOnes) {
-  const ResidentForm alone{.rows = most_rows, .masses_per_thread = 1, .records_on_chip = true};
-  ResidentForm clustered = alone;
-  clustered.clustered = true;
-  EXPECT_FALSE(compile("cuda/device/resident.cu", definitions(every_feature, alone), "sm_80").empty());
-  EXPECT_FALSE(compile("cuda/device/resident.cu", definitions(every_feature, clustered), "sm_120").empty());
+  EXPECT_FALSE(compiled(forms[0], every_feature, "sm_80").empty());
+  EXPECT_FALSE(compiled(forms[2], every_feature, "sm_120").empty());
 }
 
-TEST_F(Compiler, CompilesEveryFormForHopper) {
-  const ResidentForm forms[] = {
-      {.rows = most_rows, .masses_per_thread = 1, .chunked = false, .records_on_chip = true},
-      {.rows = rows_of_a_chunk, .masses_per_thread = 5, .chunked = true, .wide_offsets = true, .wide_table = true},
-      {.rows = most_rows, .masses_per_thread = 2, .records_on_chip = true, .clustered = true},
-      {.rows = rows_of_a_chunk, .masses_per_thread = 5, .chunked = true, .wide_offsets = true, .clustered = true}};
+/// In CUDA's PTX, as for a GPU that the compiler does not know: functions of a feature refuse to be compiled without
+/// it.
+TEST_F(Compiler, CallsNoFunctionOfAFeatureThatIsOff) {
+  for (const Feature& feature : all_features)
+    for (const std::size_t form : {std::size_t{0}, forms.size() - 1})
+      EXPECT_NO_THROW(compiled(forms[form], without(feature), "sm_999")) << feature.name << ", " << forms[form].name;
+}
+
+/// Kernels that keep a body on the chip have 64 registers per thread, and with many features that is too little.
+TEST_F(Compiler, KeepsAllInRegistersWhereTheySuffice) {
+  const auto expect_registers_to_suffice = [](const Form& form, const Features& features, const char* kernel) {
+    const auto code = tools::bench::machine_code(compiled(form, features)).at(kernel);
+    EXPECT_GT(code.instructions, 0u) << form.name;
+    EXPECT_EQ(code.local_accesses, 0u) << form.name << (features.float64 ? ", float64" : ", float32");
+  };
   for (const bool float64 : {false, true}) {
-    for (Features features : {Features{}, every_feature}) {
-      features.float64 = float64;
-      for (const ResidentForm& form : forms)
-        EXPECT_FALSE(compile("cuda/device/resident.cu", definitions(features, form), "sm_90").empty());
-      EXPECT_TRUE(compiles_streamed(features));
-    }
+    Features none{.float64 = float64}, all = every_feature;
+    all.float64 = float64;
+    for (const Features& features : {none, all})
+      expect_registers_to_suffice(forms.back(), features, "evodevo_pass_streamed");
+    for (const std::size_t resident : {0, 2})
+      expect_registers_to_suffice(forms[resident], none, "evodevo_run_resident");
   }
 }
 
 TEST_F(Compiler, CompilesEveryMethodForHopper) {
-  const ResidentForm form{.rows = most_rows, .masses_per_thread = 1, .records_on_chip = true};
   for (std::size_t i = 1; i < method_names.size(); ++i) {
     Features features = every_feature;
     features.method = static_cast<Method>(i);
-    EXPECT_TRUE(compiles_streamed(features)) << method_names[i];
+    EXPECT_FALSE(compiled(forms.back(), features).empty()) << method_names[i];
     if (is_explicit(features.method)) {
-      EXPECT_FALSE(compile("cuda/device/resident.cu", definitions(features, form), "sm_90").empty()) << method_names[i];
+      EXPECT_FALSE(compiled(forms.front(), features).empty()) << method_names[i];
     }
     features = {.method = features.method, .float64 = true};
-    EXPECT_TRUE(compiles_streamed(features)) << method_names[i];
+    EXPECT_FALSE(compiled(forms.back(), features).empty()) << method_names[i];
   }
 }
 
@@ -170,5 +201,4 @@ TEST_F(Compiler, NamesAnArchitectureThatIsTooOld) {
   }
 }
 
-}  // namespace
 }  // namespace evodevo::cuda::EVODEVO_FILE

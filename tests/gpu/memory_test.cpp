@@ -10,14 +10,12 @@
 #include "cuda/runtime/cuda_neighbours.hpp"
 #include "cuda/runtime/device.hpp"
 #include "gpu.hpp"
-#include "physics/support.hpp"
 #include "threads/parallel.hpp"
 
 namespace evodevo::testing_gpu::EVODEVO_FILE {
 namespace {
 
 constexpr std::size_t mebibyte = std::size_t{1} << 20;
-constexpr Recording all{.stress = true, .work = true, .peak_force = true, .muscle_work = true, .tension = true};
 
 /// Occupies all of the device's memory except about `left` bytes during its lifetime.
 class Ballast {
@@ -50,28 +48,28 @@ class ScarceMemory : public ::testing::Test {
       const auto materials = i % 2 == 0 ? paper_materials() : std::vector<Material>{{4000, 0, 0, 0}};
       bodies.push_back(random_body(400 + 31 * i, 20, i, materials));
     }
-    for (std::size_t i = 0; i < bodies.size(); ++i) expected.emplace_back(bodies[i], moving_state(bodies[i], scene, i));
-    std::vector<Robot*> batch;
-    for (Robot& robot : expected) batch.push_back(&robot);
-    simulate(*make_cuda_simulator(scene, stepping(Precision::float32)), batch, 300, all);
+    expected = robots(bodies.size());
+    simulate(*make_cuda_simulator(scene, single_precision), expected, 300, all_records);
   }
 
-  /// Simulates `count` robots in one batch, and compares each with the result of its body.
-  void expect_the_same(Simulator& simulator, std::size_t count) const {
+  std::vector<Robot> robots(std::size_t count) const {
     std::vector<Robot> robots;
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t kind = i % bodies.size();
       robots.emplace_back(bodies[kind], moving_state(bodies[kind], scene, kind));
     }
-    std::vector<Robot*> batch;
-    for (Robot& robot : robots) batch.push_back(&robot);
-    simulate(simulator, batch, 300, all);
+    return robots;
+  }
+
+  /// Simulates `count` robots in one batch, and compares each with the result of its body.
+  void expect_the_same(Simulator& simulator, std::size_t count) const {
+    std::vector<Robot> found = robots(count);
+    simulate(simulator, found, 300, all_records);
     for (std::size_t i = 0; i < count; ++i) {
-      const Robot& other = expected[i % bodies.size()];
-      ASSERT_EQ(robots[i].answer.status, Status::ok) << robots[i].answer.reason;
-      ASSERT_EQ(robots[i].state.position, other.state.position) << i;
-      ASSERT_EQ(robots[i].answer.work, other.answer.work) << i;
-      for (const auto list : SpringRecords::lists) ASSERT_EQ(robots[i].answer.*list, other.answer.*list) << i;
+      SCOPED_TRACE(i);
+      ASSERT_EQ(found[i].answer.status, Status::ok) << found[i].answer.reason;
+      expect_same_bits(found[i], expected[i % bodies.size()]);
+      if (HasFailure()) return;
     }
   }
 
@@ -82,21 +80,21 @@ class ScarceMemory : public ::testing::Test {
 
 TEST_F(ScarceMemory, DividesABatch) {
   const Ballast ballast(96 * mebibyte);
-  const auto simulator = make_cuda_simulator(scene, stepping(Precision::float32));
+  const auto simulator = make_cuda_simulator(scene, single_precision);
   expect_the_same(*simulator, 1024);
   EXPECT_GT(simulator->device_use()->portions, 2u);
 }
 
 TEST_F(ScarceMemory, IsSharedByBatchesAtOnce) {
   const Ballast ballast(96 * mebibyte);
-  const auto simulator = make_cuda_simulator(scene, stepping(Precision::float32));
+  const auto simulator = make_cuda_simulator(scene, single_precision);
   on_own_threads(16, [&](std::size_t) { expect_the_same(*simulator, 64); });
 }
 
 TEST_F(ScarceMemory, IsNotKeptFromOthers) {
   // memory that one simulator keeps for its next batch is given to another simulator that needs it
-  const auto first = make_cuda_simulator(scene, stepping(Precision::float32)),
-             second = make_cuda_simulator(scene, stepping(Precision::float32));
+  const auto first = make_cuda_simulator(scene, single_precision),
+             second = make_cuda_simulator(scene, single_precision);
   expect_the_same(*first, 512);
   const Ballast ballast(32 * mebibyte);
   expect_the_same(*second, 512);
@@ -104,11 +102,11 @@ TEST_F(ScarceMemory, IsNotKeptFromOthers) {
 
 TEST_F(ScarceMemory, ThatIsTooLittleForOneBodyIsNamed) {
   const Body large = test::block(40, {5000, 0.14, 1, 0});
-  const auto simulator = make_cuda_simulator({}, stepping(Precision::float32));
+  const auto simulator = make_cuda_simulator({}, single_precision);
   const auto run = [&] {
     State state = test::resting(large, {});
     Task task{.body = &large, .state = &state, .dt = 0.0005, .steps = 3};
-    simulator->run({&task, 1}, all);
+    simulator->run({&task, 1}, all_records);
     EXPECT_EQ(task.status, Status::ok) << task.reason;
   };
   {
@@ -127,10 +125,8 @@ TEST_F(ScarceMemory, ThatIsTooLittleForOneBodyIsNamed) {
 }
 
 TEST_F(ScarceMemory, DividesASearchForNeighbours) {
-  std::vector<std::vector<Vec3>> places(400);
-  Random random(3);
-  for (auto& of_body : places)
-    for (int i = 0; i < 500; ++i) of_body.push_back(random.vector());
+  std::vector<std::vector<Vec3>> places;
+  for (std::uint64_t i = 0; i < 400; ++i) places.push_back(test::random_places(500, i));
   std::vector<PointCloud> clouds;
   for (const auto& of_body : places) clouds.push_back({of_body, 25});
   std::vector<std::size_t> pairs(clouds.size());

@@ -13,14 +13,8 @@
 namespace evodevo::testing_gpu::EVODEVO_FILE {
 namespace {
 
+using test::random_places;
 using Places = std::vector<Vec3>;
-
-Places random_places(std::size_t count, std::uint64_t seed) {
-  Random random(seed);
-  Places places(count);
-  for (Vec3& place : places) place = random.vector();
-  return places;
-}
 
 Places shuffled(Places places) {
   std::mt19937_64 random(1);
@@ -53,15 +47,15 @@ void compare(const std::vector<Places>& all, std::initializer_list<std::uint32_t
   compare(*make_cuda_neighbour_search(), clouds);
 }
 
-TEST(GpuNeighbours, RandomPlacesOfManySizes) {
-  EVODEVO_NEEDS_GPU();
+class GpuNeighbours : public OnGpu {};
+
+TEST_F(GpuNeighbours, RandomPlacesOfManySizes) {
   std::vector<Places> all;
   for (const std::size_t count : {2, 3, 31, 32, 33, 64, 500, 1000}) all.push_back(random_places(count, count));
   compare(all, {1, 2, 25, 60, 5000});
 }
 
-TEST(GpuNeighbours, EquallyNearPlacesGoByIndex) {
-  EVODEVO_NEEDS_GPU();
+TEST_F(GpuNeighbours, EquallyNearPlacesGoByIndex) {
   const Places lattice = shuffled(make_lattice({9, 9, 9}, 1).corners);
   // away from the origin, distances are rounded
   Places moved = lattice;
@@ -69,45 +63,39 @@ TEST(GpuNeighbours, EquallyNearPlacesGoByIndex) {
   compare({lattice, moved}, {1, 4, 7, 25, 300});
 }
 
-TEST(GpuNeighbours, Duplicates) {
-  EVODEVO_NEEDS_GPU();
+TEST_F(GpuNeighbours, Duplicates) {
   Places copies = random_places(100, 7);
   for (int i = 0; i < 4; ++i) copies.insert(copies.end(), copies.begin(), copies.begin() + 100);
   compare({shuffled(copies), Places(200, Vec3{1, 2, 3}), Places(2, Vec3{})}, {1, 3, 4, 5, 25, 150});
 }
 
-TEST(GpuNeighbours, PlacesOnALine) {
-  EVODEVO_NEEDS_GPU();
+TEST_F(GpuNeighbours, PlacesOnALine) {
   Places even, geometric;
   for (int i = 0; i < 400; ++i) even.push_back({0.01 * i, 0, 0});
   for (int i = 0; i < 400; ++i) geometric.push_back({0, std::pow(0.5, i), 0});
   compare({shuffled(even), shuffled(geometric)}, {1, 2, 25, 200});
 }
 
-TEST(GpuNeighbours, ACrowdFarFromAStraggler) {
-  EVODEVO_NEEDS_GPU();
+TEST_F(GpuNeighbours, ACrowdFarFromAStraggler) {
   Places crowd = random_places(500, 5);
   for (Vec3& p : crowd) p = {1e-4 * p.x, 1e-6 * p.y, 1e-12 * p.z};
   crowd.push_back({1000, 1000, 1000});
   compare({shuffled(crowd)}, {1, 25, 499});
 }
 
-TEST(GpuNeighbours, NothingToJoin) {
-  EVODEVO_NEEDS_GPU();
+TEST_F(GpuNeighbours, NothingToJoin) {
   const Places none, one = random_places(1, 1), some = random_places(40, 1);
   compare(*make_cuda_neighbour_search(), {});
   compare(*make_cuda_neighbour_search(), {{none, 3}, {one, 3}, {some, 0}});
   compare(*make_cuda_neighbour_search(), {{none, 3}, {some, 3}, {one, 3}, {some, 0}, {some, 4}});
 }
 
-TEST(GpuNeighbours, LargeBodies) {
-  EVODEVO_NEEDS_GPU();
+TEST_F(GpuNeighbours, LargeBodies) {
   const Places places5000 = random_places(5000, 2), places50000 = random_places(50000, 3);
   compare(*make_cuda_neighbour_search(), {{places5000, 25}, {places50000, 25}, {places5000, 200}});
 }
 
-TEST(GpuNeighbours, Portions) {
-  EVODEVO_NEEDS_GPU();
+TEST_F(GpuNeighbours, Portions) {
   std::vector<Places> all;
   for (std::size_t i = 0; i < 40; ++i) all.push_back(random_places(20 + 17 * i, i));
   std::vector<PointCloud> clouds;
@@ -116,8 +104,7 @@ TEST(GpuNeighbours, Portions) {
   compare(*make_cuda_neighbour_search(100'000), clouds);
 }
 
-TEST(GpuNeighbours, SeveralThreadsSearchAtOnce) {
-  EVODEVO_NEEDS_GPU();
+TEST_F(GpuNeighbours, SeveralThreadsSearchAtOnce) {
   const auto search = make_cuda_neighbour_search();
   std::vector<std::jthread> threads;
   for (std::uint64_t thread = 0; thread < 4; ++thread)
@@ -129,8 +116,7 @@ TEST(GpuNeighbours, SeveralThreadsSearchAtOnce) {
     });
 }
 
-TEST(GpuNeighbours, PassesOnWhatTheCallerThrows) {
-  EVODEVO_NEEDS_GPU();
+TEST_F(GpuNeighbours, PassesOnWhatTheCallerThrows) {
   const auto search = make_cuda_neighbour_search();
   const Places places = random_places(50, 1);
   const std::vector<PointCloud> clouds{{places, 5}, {places, 6}};

@@ -10,18 +10,13 @@
 namespace evodevo::testing_gpu::EVODEVO_FILE {
 namespace {
 
-using tools::bench::MassMemory;
-using tools::bench::PaperMethod;
-using tools::bench::PaperSimulator;
-using tools::bench::RecordedStress;
-using tools::bench::SpringOrder;
-using tools::bench::StressMethod;
+using namespace tools::bench;
 
 constexpr double dt = 0.0005;  // time step, s
 
 Robot simulated(const Body& body, const Scene& scene, std::uint64_t steps, Recording recording = {}) {
   Robot robot(body, state_at_birth(body, scene));
-  simulate(*make_cuda_simulator(scene, stepping(Precision::float32)), {&robot}, steps, recording);
+  simulate(*make_cuda_simulator(scene, single_precision), {&robot}, steps, recording);
   return robot;
 }
 
@@ -64,8 +59,9 @@ INSTANTIATE_TEST_SUITE_P(Gpu, PaperMotion,
                          ::testing::Combine(::testing::Values(MassMemory::global, MassMemory::shared),
                                             ::testing::ValuesIn(tools::bench::spring_orders)));
 
-TEST(PaperStress, AtomicSumsAreOurs) {
-  EVODEVO_NEEDS_GPU();
+class PaperStress : public OnGpu {};
+
+TEST_F(PaperStress, AtomicSumsAreOurs) {
   const Body body = random_body(300, 20, 3);
   const RecordedStress stress = recorded(body, {.order = SpringOrder::spread, .stress = StressMethod::sums}, 150);
   const Robot ours = simulated(body, walking_scene(), 150, {.stress = true});
@@ -73,8 +69,7 @@ TEST(PaperStress, AtomicSumsAreOurs) {
     ASSERT_NEAR(stress.sum[i] / 150, ours.answer.stress[i], 30) << i;  // 1e4 N/m times 3e-3 m
 }
 
-TEST(PaperStress, CountsTheExtremesOfAllSprings) {
-  EVODEVO_NEEDS_GPU();
+TEST_F(PaperStress, CountsTheExtremesOfAllSprings) {
   const Body body = random_body(300, 20, 4);
   const PaperMethod method{.order = SpringOrder::shuffled, .stress = StressMethod::extremes};
   const RecordedStress many = recorded(body, method, 50);
@@ -87,8 +82,7 @@ TEST(PaperStress, CountsTheExtremesOfAllSprings) {
   EXPECT_GE(two.most[static_cast<std::size_t>(most - ours.answer.stress.begin())], 1u);
 }
 
-TEST(PaperStress, EveryGroupOfSkipShiftCounts) {
-  EVODEVO_NEEDS_GPU();
+TEST_F(PaperStress, EveryGroupOfSkipShiftCounts) {
   const Body body = random_body(300, 20, 5);
   const PaperMethod method{.threads = 128, .stress = StressMethod::skip_shift, .skip = 10};
   const RecordedStress stress = recorded(body, method, 105);
@@ -97,8 +91,7 @@ TEST(PaperStress, EveryGroupOfSkipShiftCounts) {
   EXPECT_LE(*std::max_element(stress.most.begin(), stress.most.end()), 10u);
 }
 
-TEST(PaperStress, SkipShiftFindsWhatIsStressed) {
-  EVODEVO_NEEDS_GPU();
+TEST_F(PaperStress, SkipShiftFindsWhatIsStressed) {
   const Body body = random_body(500, 20, 6);
   const RecordedStress stress = recorded(body, {.stress = StressMethod::skip_shift, .skip = 1}, 2000);
   const Robot ours = simulated(body, walking_scene(), 2000, {.stress = true});

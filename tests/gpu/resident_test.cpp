@@ -18,7 +18,7 @@ namespace evodevo::cuda::EVODEVO_FILE {
 namespace {
 
 constexpr std::size_t shared_bytes = 227 << 10;  // shared memory of a block on an H200
-const Features features{.gravity = true, .floor = true, .elastic = true, .friction = true, .damping = true};
+const Features features{.gravity = true, .has_floor = true, .elastic_floor = true, .friction = true, .damping = true};
 
 /// A body of 1,000 masses, each joined to 25 neighbours, whose springs cycle through `materials` materials. If
 /// `materials` is 0, each spring has a material of its own.
@@ -32,14 +32,34 @@ Body body_of(std::size_t materials) {
   return body;
 }
 
-/// A task at the start of its simulation.
+const Scene scene = testing_gpu::walking_scene();
+
+/// A task at the start of its simulation, with the state of its body.
 template <class T>
-Task task_of(const Body& body, State& state, const Scene& scene) {
-  Task task{.body = &body, .state = &state};
-  task.course = course_of(task, scene, Precision::float32);
-  task.course->forces = force_range<T>(body, state, scene);
-  return task;
-}
+struct Born {
+  explicit Born(const Body& body) : state(state_at_birth(body, scene)), task{.body = &body, .state = &state} {
+    task.course = course_of(task, scene, Precision::float32);
+    task.course->forces = force_range<T>(body, state, scene);
+  }
+  Born(const Born&) = delete;
+
+  State state;
+  Task task;
+};
+
+double largest_force(const Body& body) { return force_range<float>(body, state_at_birth(body, scene), scene).largest; }
+
+/// What the host gives to the device, in memory of the host.
+struct Packed {
+  explicit Packed(const Resident<float>& resident)
+      : input(resident.sizes().input), motion(resident.sizes().state), sums(64), blocks(resident.blocks()) {
+    const Regions regions{input.data(), motion.data(), sums.data()};
+    resident.pack(regions, regions, scene, blocks.data());
+  }
+
+  std::vector<std::byte> input, motion, sums;
+  std::vector<ResidentBody<float>> blocks;
+};
 
 TEST(Resident, ForcesHaveRoomForADashpotThatStopsAFall) {
   // a tall, soft body on a short spring, whose own force is small
@@ -47,16 +67,10 @@ TEST(Resident, ForcesHaveRoomForADashpotThatStopsAFall) {
   body.materials = {{100, 0, 0, 0, 20}, {1, 0, 0, 0}};
   body.masses = {{{0, 0, 0}, 0.2}, {{0, 0, 0.05}, 0.2}, {{0, 0, 2}, 0.2}};
   body.springs = {{0, 1, 0.05, 0}, {1, 2, 1.95, 1}};
-  const Scene scene = testing_gpu::walking_scene();
-  const double largest = force_range<float>(body, state_at_birth(body, scene), scene).largest;
-  EXPECT_GT(largest, body.damping(body.springs[0]) * std::sqrt(2 * 9.81 * 2));
+  EXPECT_GT(largest_force(body), body.damping(body.springs[0]) * std::sqrt(2 * 9.81 * 2));
 }
 
 TEST(Resident, TheRangeOfALargeBodyIsNotThatOfItsWholeWeight) {
-  const Scene scene = testing_gpu::walking_scene();
-  const auto largest = [&](const Body& body) {
-    return force_range<float>(body, state_at_birth(body, scene), scene).largest;
-  };
   // a chain of soft springs, which its weight would tear; from 1,000 masses on, it is cut off
   const auto chain = [](std::uint32_t masses) {
     Body body;
@@ -68,28 +82,26 @@ TEST(Resident, TheRangeOfALargeBodyIsNotThatOfItsWholeWeight) {
     return body;
   };
   const double of_thousand = 1000 * 0.2 * 9.81;
-  EXPECT_GT(largest(chain(1000)), of_thousand);
-  EXPECT_GT(largest(chain(8000)), of_thousand);
-  EXPECT_LT(largest(chain(8000)), 2 * of_thousand);
+  EXPECT_GT(largest_force(chain(1000)), of_thousand);
+  EXPECT_GT(largest_force(chain(8000)), of_thousand);
+  EXPECT_LT(largest_force(chain(8000)), 2 * of_thousand);
   Body hanging = chain(8000);
   hanging.masses.back().mass = 0;
-  EXPECT_GT(largest(hanging), 7.9 * of_thousand);
+  EXPECT_GT(largest_force(hanging), 7.9 * of_thousand);
   Body pieces = chain(8000);
   std::erase_if(pieces.springs, [](const Spring& spring) { return spring.b % 100 == 0; });
-  EXPECT_GT(largest(pieces), of_thousand / 10);
-  EXPECT_LT(largest(pieces), of_thousand / 2);
+  EXPECT_GT(largest_force(pieces), of_thousand / 10);
+  EXPECT_LT(largest_force(pieces), of_thousand / 2);
 }
 
 TEST(Resident, LargeBodiesGetASmallClusterThatHoldsTheirSprings) {
-  const Scene scene = testing_gpu::walking_scene();
   const auto blocks = [&](std::uint32_t masses, unsigned largest_cluster, unsigned wanted, bool work = false) {
     const Body body = testing_gpu::random_body(masses, 25, 1);
-    State state = state_at_birth(body, scene);
-    Task task = task_of<float>(body, state, scene);
-    task.steps = 20000;
+    Born<float> born(body);
+    born.task.steps = 20000;
     Features recording = features;
     recording.work = work;
-    const auto resident = Resident<float>::arrange(task, recording, {shared_bytes, largest_cluster, wanted});
+    const auto resident = Resident<float>::arrange(born.task, recording, {shared_bytes, largest_cluster, wanted});
     return resident ? resident->blocks() : 0;
   };
   EXPECT_EQ(blocks(1000, 16, 1), 1u);
@@ -104,21 +116,19 @@ TEST(Resident, LargeBodiesGetASmallClusterThatHoldsTheirSprings) {
 }
 
 TEST(Resident, NoBodyIsDividedIntoMorePartsThanItHasMasses) {
-  const Scene scene = testing_gpu::walking_scene();
   Body body;
   body.masses = {{{0, 0, 0}, 0.2}, {{1, 0, 0}, 0.2}, {{0, 1, 0}, 0.2}};
   body.springs = {{0, 1, 1, 0}, {1, 2, 1.4, 1}};
   body.materials.assign(3000, {4000, 0.1, 1, 0});  // of which no block has room for the lengths
-  State state = state_at_birth(body, scene);
-  const Task of_many_materials = task_of<double>(body, state, scene);
+  const Born<double> of_many_materials(body);
   Features recording = features;
   recording.method = Method::rk4;
   recording.float64 = recording.actuation = recording.dashpots = recording.work = true;
-  EXPECT_FALSE(Resident<double>::arrange(of_many_materials, recording, {shared_bytes, 16}));
+  EXPECT_FALSE(Resident<double>::arrange(of_many_materials.task, recording, {shared_bytes, 16}));
   body.materials.resize(1);
   body.springs.assign(100000, {0, 1, 1, 0});  // for which no block has room
-  const Task of_many_springs = task_of<float>(body, state, scene);
-  const auto resident = Resident<float>::arrange(of_many_springs, features, {shared_bytes, 16});
+  const Born<float> of_many_springs(body);
+  const auto resident = Resident<float>::arrange(of_many_springs.task, features, {shared_bytes, 16});
   ASSERT_TRUE(resident);
   EXPECT_EQ(resident->blocks(), 3u);
 }
@@ -175,18 +185,16 @@ class Chips {
 
 TEST(Resident, TheBlocksOfABodyComputeTheForcesOfAllItsSprings) {
   const Body body = testing_gpu::random_body(900, 20, 1);
-  const Scene scene = testing_gpu::walking_scene();
-  State state = state_at_birth(body, scene);
+  Born<float> born(body);
+  State& state = born.state;
   for (Vec3& place : state.position) place.x *= 1.1;  // strains the springs
-  Task task = task_of<float>(body, state, scene);
-  task.steps = 20000;
-  const auto resident = Resident<float>::arrange(task, features, {shared_bytes, 16, 5});
+  born.task.course->forces = force_range<float>(body, state, scene);
+  born.task.steps = 20000;
+  const auto resident = Resident<float>::arrange(born.task, features, {shared_bytes, 16, 5});
   ASSERT_TRUE(resident);
   ASSERT_EQ(resident->blocks(), 5u);
-  std::vector<std::byte> input(resident->sizes().input), motion(resident->sizes().state), sums(64);
-  const Regions regions{input.data(), motion.data(), sums.data()};
-  std::vector<ResidentBody<float>> blocks(resident->blocks());
-  resident->pack(regions, regions, scene, blocks.data());
+  const Packed packed(*resident);
+  const std::vector<ResidentBody<float>>& blocks = packed.blocks;
   for (std::size_t i = 0; i < slots_read_ahead; ++i) {
     const Record<float>& empty = blocks.front().records[resident->slots() + i];
     EXPECT_EQ(empty.rest_length, 0);
@@ -234,18 +242,13 @@ TEST(Resident, TheBlocksOfABodyComputeTheForcesOfAllItsSprings) {
 TEST(Resident, RecordsLeadToTheirMaterials) {
   for (const std::size_t materials : {15, 200, 5000, 9000, 0}) {
     const Body body = body_of(materials);
-    const Scene scene = testing_gpu::walking_scene();
-    State state = state_at_birth(body, scene);
-    const Task task = task_of<float>(body, state, scene);
-    const auto resident = Resident<float>::arrange(task, features, {shared_bytes});
+    const Born<float> born(body);
+    const auto resident = Resident<float>::arrange(born.task, features, {shared_bytes});
     ASSERT_TRUE(resident) << materials;
     const bool wide = body.materials.size() > 8190;  // 16-bit offsets reach 8,191 entries; one is for empty slots
     EXPECT_EQ(resident->form().wide_table, wide) << materials;
-
-    std::vector<std::byte> input(resident->sizes().input), motion(resident->sizes().state);
-    const Regions regions{input.data(), motion.data(), nullptr};
-    ResidentBody<float> packed;
-    resident->pack(regions, regions, scene, &packed);
+    const Packed memory(*resident);
+    const ResidentBody<float>& packed = memory.blocks.front();
     std::size_t springs = 0;
     for (std::size_t i = 0; i < resident->slots(); ++i) {
       const std::size_t entry = (packed.records[i].packed >> 16) * (wide ? sizeof(float) : 1) / sizeof(Entry<float>);
@@ -261,21 +264,16 @@ TEST(Resident, RecordsLeadToTheirMaterials) {
 TEST(Resident, SpringsCarryTheCodesOfTheirMaterials) {
   for (const std::size_t materials : {15, 1000, 0}) {
     const Body body = body_of(materials);
-    const Scene scene = testing_gpu::walking_scene();
-    State state = state_at_birth(body, scene);
-    const Task task = task_of<float>(body, state, scene);
+    const Born<float> born(body);
     Features computed = features;
     computed.materials = Materials::computed;
     computed.actuation = true;
-    const auto resident = Resident<float>::arrange(task, computed, {shared_bytes});
+    const auto resident = Resident<float>::arrange(born.task, computed, {shared_bytes});
     ASSERT_TRUE(resident) << materials;
     EXPECT_TRUE(resident->form().records_on_chip) << "whatever the materials";
     EXPECT_FALSE(resident->form().wide_table);
-
-    std::vector<std::byte> input(resident->sizes().input), motion(resident->sizes().state);
-    const Regions regions{input.data(), motion.data(), nullptr};
-    ResidentBody<float> packed;
-    resident->pack(regions, regions, scene, &packed);
+    const Packed memory(*resident);
+    const ResidentBody<float>& packed = memory.blocks.front();
     const MaterialUnits units = material_units(body);
     EXPECT_FLOAT_EQ(packed.units.stiffness * static_cast<float>(packed.resolution),
                     static_cast<float>(units.stiffness));
@@ -296,28 +294,22 @@ TEST(Resident, SpringsCarryTheCodesOfTheirMaterials) {
 
 TEST(Resident, LeavesToTheDevicesMemoryWhatTheChipCannotHold) {
   const Body body = body_of(0);  // in float64, its table alone is as large as the chip's memory
-  State state = state_at_birth(body, testing_gpu::walking_scene());
-  const Task task = task_of<double>(body, state, testing_gpu::walking_scene());
-  EXPECT_FALSE(Resident<double>::arrange(task, features, {shared_bytes}));
-  EXPECT_FALSE(Resident<float>::arrange(task, features, {shared_bytes / 2}));
+  const Born<double> born(body);
+  EXPECT_FALSE(Resident<double>::arrange(born.task, features, {shared_bytes}));
+  EXPECT_FALSE(Resident<float>::arrange(born.task, features, {shared_bytes / 2}));
 }
 
 TEST(Resident, WhatIsRecordedOrSampledDoesNotDecideHowManyStepsATableHas) {
   for (const std::size_t materials : {4, 15, 200, 5000}) {
     const Body body = body_of(materials);
-    const Scene scene = testing_gpu::walking_scene();
-    State state = state_at_birth(body, scene);
-    Task task = task_of<float>(body, state, scene);
+    Born<float> born(body);
+    Task& task = born.task;
     task.steps = 1000;
     task.sampled_at = {{10, {.work = true, .positions = true, .contacts = true}}};
     const auto table_steps = [&](Recording recording, const Channels& channels) {
       const Features all = features_of(scene, {}, recording, {.actuation = true}, channels);
       const auto resident = Resident<float>::arrange(task, all, {shared_bytes});
-      std::vector<std::byte> input(resident->sizes().input), motion(resident->sizes().state);
-      const Regions regions{input.data(), motion.data(), nullptr};
-      ResidentBody<float> packed;
-      resident->pack(regions, regions, scene, &packed);
-      return packed.table_steps;
+      return Packed(*resident).blocks.front().table_steps;
     };
     const std::uint32_t plain = table_steps({}, {});
     EXPECT_EQ(plain, table_steps({true, true, true, true, true}, {})) << materials;
@@ -332,10 +324,9 @@ TEST(Resident, WhatIsRecordedDoesNotDecideWhereABodyLies) {
   for (std::size_t materials = 14000; materials < 26000; materials += 1000) {
     Body body = testing_gpu::random_body(200, 10, 1);
     body.materials.resize(materials, {4000, 0, 0, 0});
-    State state = state_at_birth(body, testing_gpu::walking_scene());
-    const Task task = task_of<float>(body, state, testing_gpu::walking_scene());
-    const bool plain = Resident<float>::arrange(task, features, {shared_bytes}).has_value();
-    EXPECT_EQ(plain, Resident<float>::arrange(task, recording, {shared_bytes}).has_value()) << materials;
+    const Born<float> born(body);
+    const bool plain = Resident<float>::arrange(born.task, features, {shared_bytes}).has_value();
+    EXPECT_EQ(plain, Resident<float>::arrange(born.task, recording, {shared_bytes}).has_value()) << materials;
     on_chip += plain;
   }
   EXPECT_GT(on_chip, 0);

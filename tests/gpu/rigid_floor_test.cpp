@@ -2,9 +2,7 @@
 // bodies rest, slide or bounce a few times, so that rounding does not grow; each case checks that first.
 #include <gmock/gmock.h>
 
-#include "analysis/ground.hpp"
 #include "gpu.hpp"
-#include "physics/support.hpp"
 
 namespace evodevo::testing_gpu::EVODEVO_FILE {
 namespace {
@@ -12,12 +10,11 @@ namespace {
 constexpr std::uint64_t steps = 300;
 constexpr double dt = 0.0005;
 
-Scene level(double restitution) {
-  return {Gravity{9.81, 8}, Floor{.restitution = restitution}, Friction{0.3, 0.6}, {}, {}};
+Scene ground(double restitution, double roughness) {
+  return {Gravity{9.81, 8}, Floor{.roughness = roughness, .restitution = restitution}, Friction{0.3, 0.6}, {}, {}};
 }
-Scene rough(double restitution) {
-  return {Gravity{9.81, 8}, Floor{.roughness = 0.02, .restitution = restitution}, Friction{0.3, 0.6}, {}, {}};
-}
+Scene level(double restitution) { return ground(restitution, 0); }
+Scene rough(double restitution) { return ground(restitution, 0.02); }
 
 constexpr std::uint32_t different = 150;
 
@@ -49,11 +46,7 @@ State start_of_pairs(const Body& body, const Scene& scene) {
 
 /// A block that falls onto the ground and slides.
 State start_of_block(const Body& body, const Scene& scene) {
-  State state = state_at_birth(body, scene);
-  for (Vec3& place : state.position) place.z += 0.0031;
-  for (Vec3& velocity : state.velocity) velocity = {0.2, 0.1, 0};
-  state.start_energy = total_energy(body, state, scene);
-  return state;
+  return test::thrown(body, scene, {0, 0, 0.0031}, {0.2, 0.1, 0});
 }
 
 /// The state after a run, and the number of steps in which each mass touched the ground.
@@ -79,11 +72,9 @@ class GpuRigidFloor : public ::testing::TestWithParam<Method> {
     const Stepping single{GetParam(), Precision::float32};
     const End cpu = end_of(*make_cpu_simulator(scene, single, 0), body, start);
     const End exact = end_of(*make_cpu_simulator(scene, {GetParam(), Precision::float64}, 0), body, start);
-    std::printf("           rounding: %.3g m\n", distance(cpu.state, exact.state));
     ASSERT_LT(distance(cpu.state, exact.state), near) << "rounding grows";
     EVODEVO_NEEDS_GPU();
     const End gpu = end_of(*make_cuda_simulator(scene, single), body, start);
-    std::printf("           off by %.3g m\n", distance(cpu.state, gpu.state));
     EXPECT_GT(distance(gpu.state, start), 0.01);
     EXPECT_LT(distance(cpu.state, gpu.state), near);
     EXPECT_THAT(gpu.contacts, ::testing::Pointwise(::testing::DoubleNear(0.05 * steps), cpu.contacts));
@@ -91,9 +82,7 @@ class GpuRigidFloor : public ::testing::TestWithParam<Method> {
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Gpu, GpuRigidFloor, ::testing::ValuesIn(all_methods), [](const auto& test) {
-  return name(Way{test.param, Precision::float32});
-});
+INSTANTIATE_TEST_SUITE_P(Gpu, GpuRigidFloor, ::testing::ValuesIn(all_methods), named);
 
 TEST_P(GpuRigidFloor, OnTheChip) {
   for (const Scene& scene : {level(0), level(0.5), rough(0), rough(0.5)}) {

@@ -1,19 +1,28 @@
-// Building bodies from blueprints.
+// Bodies: building them from blueprints, and reading them from JSON files, which restores every bit.
 #include "life/body_building.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
-#include <set>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
-#include <tuple>
 
 #include "analysis/neighbours.hpp"
+#include "base/input_error.hpp"
+#include "base/philox.hpp"
+#include "life/body_json.hpp"
+#include "support/bodies.hpp"
 #include "support/messages.hpp"
+#include "support/refusals.hpp"
+#include "support/scratch.hpp"
 
 namespace evodevo::EVODEVO_FILE {
 namespace {
+
+using ::testing::ElementsAre;
+using ::testing::UnorderedElementsAre;
 
 /// A blueprint of masses at the given positions along x, with material 0 (bone) or 1 (air).
 Blueprint row(const std::vector<std::pair<double, std::int32_t>>& masses, std::uint32_t neighbours) {
@@ -24,23 +33,31 @@ Blueprint row(const std::vector<std::pair<double, std::int32_t>>& masses, std::u
   return blueprint;
 }
 
-/// Returns what check_blueprint() says of a blueprint for an encoding with the given context, or an empty text.
-std::string fault_of(const Blueprint& blueprint, const EncodingContext& context) {
-  try {
-    check_blueprint(blueprint, context);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
+/// Returns what check_blueprint() says of a blueprint for an encoding whose context has the materials of row().
+std::string fault_of(const Blueprint& blueprint) {
+  const EncodingContext context{.materials = row({}, 0).body.materials};
+  return testing::refusal<std::invalid_argument>([&] { check_blueprint(blueprint, context); });
 }
 
-TEST(BodyBuilding, JoinsNeighboursByTheMeanOfTheirMaterials) {
+constexpr double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
+
+/// Which masses the springs of a body join.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> joined(const Body& body) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  for (const Spring& spring : body.springs) pairs.emplace_back(spring.a, spring.b);
+  return pairs;
+}
+
+TEST(BodyBuilding, JoinsNeighboursByTheMeanOfTheirMaterialsAndStandsOnTheFloor) {
   const BuiltBody built = build_body(row({{0, 0}, {1, 1}, {3, 0}}, 1));
   ASSERT_EQ(built.failure, "");
   ASSERT_EQ(built.body.springs.size(), 2u);
   EXPECT_EQ(built.body.springs[1].rest_length, 2);
   EXPECT_EQ(built.body.springs[1].first_length, 2);
   EXPECT_EQ(built.body.materials.at(built.body.springs[0].material).stiffness, 5000);
+  const BuiltBody other = build_body(row({{4, 0}, {6, 0}}, 1));
+  EXPECT_EQ(other.body.masses[0].rest, (Vec3{-1, 0, 0})) << "on the floor, over the origin";
+  EXPECT_EQ(other.body.masses[1].rest, (Vec3{1, 0, 0}));
 }
 
 TEST(BodyBuilding, LeavesOutAirAndCountsIt) {
@@ -48,33 +65,19 @@ TEST(BodyBuilding, LeavesOutAirAndCountsIt) {
   const BuiltBody built = build_body(row({{0, 0}, {1, 1}, {2, 1}, {3, 0}}, 3));
   ASSERT_EQ(built.failure, "");
   EXPECT_EQ(built.body.springs.size(), 5u);
-  EXPECT_EQ(built.body.masses[0].air_contacts, 0u);
-  EXPECT_EQ(built.body.masses[1].air_contacts, 1u);
-  EXPECT_EQ(built.body.masses[2].air_contacts, 1u);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(built.body.masses[i].air_contacts, i % 3 == 0 ? 0u : 1u) << i;
 }
 
 TEST(BodyBuilding, KeepsTheLargestPieceAndDropsLooseMasses) {
   Blueprint blueprint = row({{0, 0}, {1, 0}, {10, 0}, {11, 0}, {12, 0}, {99, 0}}, 0);
   blueprint.body.springs = {{0, 1, 1, 0}, {3, 2, 1, 0}, {4, 3, 1, 0}};
-  const BuiltBody built = build_body(std::move(blueprint));
-  ASSERT_EQ(built.body.masses.size(), 3u);
-  ASSERT_EQ(built.body.springs.size(), 2u);
-  EXPECT_EQ(built.body.springs[0].a, 1u);
-  EXPECT_EQ(built.body.springs[0].b, 0u);
-  EXPECT_EQ(built.body.springs[1].a, 2u);
-}
-
-TEST(BodyBuilding, ABlueprintThatGrowsToNothingIsRefused) {
-  Blueprint blueprint = row({{0, 0}, {1, 0}}, 0);
-  blueprint.body.springs = {{0, 1, 0.8, 0}};
-  const EncodingContext context{{"bone", "air"}, blueprint.body.materials, 0.2, nullptr};
-  EXPECT_NO_THROW(check_blueprint(blueprint, context));
-  EXPECT_EQ(build_body(blueprint).body.springs.at(0).first_length, 0.8) << "of springs by the encoding too";
-  for (const float growth :
-       {0.0f, -1.0f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
-    blueprint.body.springs[0].growth = growth;
-    EXPECT_THROW(check_blueprint(blueprint, context), std::invalid_argument) << growth;
-  }
+  EXPECT_THAT(loose_masses(blueprint.body), ElementsAre(0, 1, 5));
+  const Body body = build_body(blueprint).body;
+  EXPECT_EQ(body.masses.size(), 3u);
+  EXPECT_THAT(joined(body), ElementsAre(std::pair(1, 0), std::pair(2, 1)));
+  blueprint.body.springs.push_back({1, 2, 1, 0});
+  EXPECT_THAT(loose_masses(blueprint.body), ElementsAre(5));
+  EXPECT_TRUE(loose_masses({}).empty());
 }
 
 TEST(BodyBuilding, AFailureOfTheEncodingIsCleanText) {
@@ -91,15 +94,12 @@ TEST(BodyBuilding, NeighboursAreThoseOfThePlacesToPairAt) {
   blueprint.paired_at = {{0, 0, 0}, {2, 0, 0}, {3, 0, 0}, {0, 1, 0}};
   blueprint.neighbours = 2;
   const BuiltBody built = build_body(blueprint);
-  ASSERT_EQ(built.failure, "");
-  std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
-  for (const Spring& spring : built.body.springs) {
-    pairs.insert({spring.a, spring.b});
+  for (const Spring& spring : built.body.springs)
     EXPECT_EQ(spring.rest_length, norm(built.body.masses[spring.a].rest - built.body.masses[spring.b].rest));
-  }
-  EXPECT_EQ(pairs, (std::set<std::pair<std::uint32_t, std::uint32_t>>{{0, 1}, {0, 3}, {1, 2}, {0, 2}, {1, 3}}));
+  EXPECT_THAT(joined(built.body), UnorderedElementsAre(std::pair(0, 1), std::pair(0, 3), std::pair(1, 2),
+                                                       std::pair(0, 2), std::pair(1, 3)));
 
-  blueprint.paired_at.back() = {std::numeric_limits<double>::infinity(), 0, 0};
+  blueprint.paired_at.back() = {infinity, 0, 0};
   EXPECT_THAT(build_body(blueprint).failure, testing::at_place("no body: ", "pair", "not finite"));
 }
 
@@ -118,107 +118,84 @@ TEST(BodyBuilding, SpringsToNeighboursHaveTheMeanSizeOfTheirMasses) {
   expect_length(2, 0.625 * 2, 1.125 * 2);
   EXPECT_EQ(norm(built.body.masses[2].rest - built.body.masses[1].rest), 2) << "rest places stay";
 
-  for (const double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), HUGE_VAL}) {
-    blueprint.sizes[1] = {1, bad};
-    EXPECT_THAT(build_body(blueprint).failure, testing::at_place("no body: ", "size", "not finite", "not above 0"));
-    blueprint.sizes[1] = {bad, 1};
-    EXPECT_THAT(build_body(blueprint).failure, testing::at_place("no body: ", "size", "not finite", "not above 0"));
-  }
+  for (const double bad : {0.0, -1.0, nan, infinity})
+    for (const Size& size : {Size{1, bad}, Size{bad, 1}}) {
+      blueprint.sizes[1] = size;
+      EXPECT_THAT(build_body(blueprint).failure, testing::at_place("no body: ", "size", "not finite", "not above 0"));
+    }
 }
 
 TEST(BodyBuilding, EachFaultOfABlueprintIsNamed) {
   Blueprint sound = row({{0, no_material}, {1, 0}, {3, 1}}, 0);
   sound.body.springs = {{0, 1, 0, 1}, {1, 2, 2, 0}};
-  const EncodingContext context{.materials = sound.body.materials};
   sound.body.materials.push_back({500, 0.1, 1, 0});
-  EXPECT_EQ(fault_of(sound, context), "") << "an encoding may add materials";
-  constexpr double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(fault_of(sound), "no refusal") << "an encoding may add materials";
   const auto fault = [&](const auto& spoil) {
     Blueprint blueprint = sound;
     spoil(blueprint.body);
-    return fault_of(blueprint, context);
+    return fault_of(blueprint);
   };
   const auto material = [&](const auto& spoil) { return fault([&](Body& body) { spoil(body.materials); }); };
   EXPECT_THAT(material([](auto& all) { all[1].stiffness += 1; }), testing::at_place("material 1 ", "context"));
   EXPECT_THAT(material([](auto& all) { all.resize(1); }), testing::at_place("material 1 ", "context"));
   EXPECT_THAT(material([](auto& all) { all.clear(); }), testing::at_place("material 0 ", "context"));
-  const auto mass = [&](const auto& spoil) { return fault([&](Body& body) { spoil(body.masses[1]); }); };
-  for (const double value : {0.0, -0.1, infinity, std::nan("")})
-    EXPECT_THAT(mass([&](Mass& one) { one.mass = value; }), testing::at_place("mass 1 ", "above 0 kg")) << value;
-  EXPECT_THAT(mass([](Mass& one) { one.material = no_material - 1; }), testing::at_place("mass 1 ", "negative"));
-  EXPECT_THAT(mass([](Mass& one) { one.material = 3; }), testing::at_place("mass 1 ", "material 3", "3 materials"));
-  const auto spring = [&](const auto& spoil) { return fault([&](Body& body) { spoil(body.springs[1]); }); };
-  EXPECT_THAT(spring([](Spring& one) { one.a = 3; }), testing::at_place("spring 1 ", "mass 3", "3 masses"));
-  EXPECT_THAT(spring([](Spring& one) { one.b = 3; }), testing::at_place("spring 1 ", "mass 3", "3 masses"));
-  EXPECT_THAT(spring([](Spring& one) { one.a = one.b; }), testing::at_place("spring 1 ", "itself"));
-  EXPECT_THAT(spring([](Spring& one) { one.material = 3; }),
-              testing::at_place("spring 1 ", "material 3", "3 materials"));
-  for (const double value : {-0.1, infinity, std::nan("")})
-    EXPECT_THAT(spring([&](Spring& one) { one.rest_length = value; }), testing::at_place("spring 1 ", "rest length"))
+  /// Expects that the second item of a list is named if one of its members has this value.
+  const auto expect = [&](auto list, auto member, auto value, const std::string& place, const auto&... parts) {
+    EXPECT_THAT(fault([&](Body& body) { (body.*list)[1].*member = value; }), testing::at_place(place, parts...))
         << value;
-  for (const double value : {0.0, -0.1, infinity, std::nan("")})
-    EXPECT_THAT(spring([&](Spring& one) { one.growth = value; }), testing::at_place("spring 1 ", "growth")) << value;
-  for (const double value : {infinity, std::nan("")})
-    EXPECT_THAT(spring([&](Spring& one) { one.phase_growth = value; }), testing::at_place("spring 1 ", "phase_growth"))
-        << value;
-  for (const double value : {0.0, -0.1, infinity, std::nan("")})
-    EXPECT_THAT(spring([&](Spring& one) { one.stiffness_factor = value; }),
-                testing::at_place("spring 1 ", "stiffness_factor"))
-        << value;
+  };
+  for (const double value : {0.0, -0.1, infinity, nan})
+    expect(&Body::masses, &Mass::mass, value, "mass 1 ", "above 0 kg");
+  expect(&Body::masses, &Mass::material, no_material - 1, "mass 1 ", "negative");
+  expect(&Body::masses, &Mass::material, 3, "mass 1 ", "material 3", "3 materials");
+  expect(&Body::springs, &Spring::a, 3u, "spring 1 ", "mass 3", "3 masses");
+  expect(&Body::springs, &Spring::b, 3u, "spring 1 ", "mass 3", "3 masses");
+  expect(&Body::springs, &Spring::a, 2u, "spring 1 ", "itself");
+  expect(&Body::springs, &Spring::material, 3u, "spring 1 ", "material 3", "3 materials");
+  for (const double value : {-0.1, infinity, nan})
+    expect(&Body::springs, &Spring::rest_length, value, "spring 1 ", "rest length");
+  for (const float value : {0.0f, -0.1f, HUGE_VALF, NAN}) {
+    expect(&Body::springs, &Spring::growth, value, "spring 1 ", "growth");
+    expect(&Body::springs, &Spring::stiffness_factor, value, "spring 1 ", "stiffness_factor");
+  }
+  for (const float value : {HUGE_VALF, NAN})
+    expect(&Body::springs, &Spring::phase_growth, value, "spring 1 ", "phase_growth");
 }
 
 TEST(BodyBuilding, ListsHoldAnEntryForEachMass) {
-  const Blueprint sound = row({{0, 0}, {1, 0}, {3, 0}}, 1);
-  const EncodingContext context{.materials = sound.body.materials};
-  const auto fault = [&](auto Blueprint::*list, std::size_t entries) -> std::string {
-    Blueprint blueprint = sound;
+  const auto fault = [](auto Blueprint::*list, std::size_t entries) {
+    Blueprint blueprint = row({{0, 0}, {1, 0}, {3, 0}}, 1);
     (blueprint.*list).resize(entries);
-    return fault_of(blueprint, context);
+    return fault_of(blueprint);
   };
   EXPECT_THAT(fault(&Blueprint::sizes, 2), testing::naming("2 ", "sizes", "3 masses"));
   EXPECT_THAT(fault(&Blueprint::paired_at, 4), testing::naming("4 ", "pair", "3 masses"));
   EXPECT_THAT(fault(&Blueprint::origins, 1), testing::naming("1 ", "origin", "3 masses"));
-  for (const std::size_t entries : {0u, 3u}) EXPECT_EQ(fault(&Blueprint::sizes, entries), "");
+  for (const std::size_t entries : {0u, 3u}) EXPECT_EQ(fault(&Blueprint::sizes, entries), "no refusal");
 }
 
 TEST(BodyBuilding, NoTwoSpringsJoinOnePair) {
   Blueprint blueprint = row({{0, 0}, {1, 0}, {3, 0}, {7, 0}}, 0);
-  const EncodingContext context{.materials = blueprint.body.materials};
-  const auto fault = [&](std::vector<Spring> springs) -> std::string {
-    blueprint.body.springs = std::move(springs);
-    return fault_of(blueprint, context);
+  const auto fault = [&](const std::vector<Spring>& springs) {
+    blueprint.body.springs = springs;
+    return fault_of(blueprint);
   };
-  EXPECT_EQ(fault({{0, 1, 1, 0}, {2, 0, 1, 0}, {1, 2, 1, 0}, {3, 1, 1, 0}, {2, 3, 1, 0}}), "");
+  EXPECT_EQ(fault({{0, 1, 1, 0}, {2, 0, 1, 0}, {1, 2, 1, 0}, {3, 1, 1, 0}, {2, 3, 1, 0}}), "no refusal");
   EXPECT_THAT(fault({{0, 1, 1, 0}, {3, 2, 1, 0}, {2, 3, 1, 0}, {1, 0, 1, 0}}),
               testing::naming("spring 2 ", "masses 2 and 3", "joined already"));
-  EXPECT_THAT(fault({{0, 3, 1, 0}, {1, 3, 1, 0}, {0, 2, 1, 0}, {3, 0, 1, 0}}),
-              testing::naming("spring 3 ", "masses 3 and 0", "joined already"));
+  const std::vector<Spring> twice{{0, 3, 1, 0}, {1, 3, 1, 0}, {0, 2, 1, 0}, {3, 0, 1, 0}};
+  EXPECT_THAT(fault(twice), testing::naming("spring 3 ", "masses 3 and 0", "joined already"));
   blueprint.parallel = true;
-  EXPECT_EQ(fault({{0, 3, 1, 0}, {1, 3, 1, 0}, {0, 2, 1, 0}, {3, 0, 1, 0}}), "");
+  EXPECT_EQ(fault(twice), "no refusal");
 }
 
 TEST(BodyBuilding, NeighboursThatAreJoinedAlreadyAreNotJoinedAgain) {
   Blueprint blueprint = row({{0, 0}, {1, 0}, {3, 0}}, 1);
   blueprint.body.springs = {{1, 0, 0.7, 0}};
   const Body body = build_body(blueprint).body;
-  ASSERT_EQ(body.springs.size(), 2u);
+  EXPECT_THAT(joined(body), ElementsAre(std::pair(1, 0), ::testing::AnyOf(std::pair(1, 2), std::pair(2, 1))));
   EXPECT_EQ(body.springs[0].rest_length, 0.7) << "the encoding's own stays";
-  EXPECT_EQ(body.springs[1].a + body.springs[1].b, 3u) << "of masses 1 and 2";
-}
-
-TEST(BodyBuilding, LooseMassesAreThoseOutsideTheLargestPiece) {
-  Body body = row({{0, 0}, {1, 0}, {10, 0}, {11, 0}, {12, 0}, {99, 0}}, 0).body;
-  body.springs = {{0, 1, 1, 0}, {3, 2, 1, 0}, {4, 3, 1, 0}};
-  EXPECT_EQ(loose_masses(body), (std::vector<std::uint32_t>{0, 1, 5}));
-  body.springs.push_back({1, 2, 1, 0});
-  EXPECT_EQ(loose_masses(body), (std::vector<std::uint32_t>{5}));
-  EXPECT_TRUE(loose_masses({}).empty());
-}
-
-TEST(BodyBuilding, StandsOnTheFloorOverTheOrigin) {
-  const BuiltBody built = build_body(row({{4, 0}, {6, 0}}, 1));
-  EXPECT_EQ(built.body.masses[0].rest, (Vec3{-1, 0, 0}));
-  EXPECT_EQ(built.body.masses[1].rest, (Vec3{1, 0, 0}));
+  EXPECT_EQ(body.springs[0].first_length, 0.7);
 }
 
 TEST(BodyBuilding, ALoadLiesOnTheTop) {
@@ -234,62 +211,132 @@ TEST(BodyBuilding, ALoadLiesOnTheTop) {
   std::vector<Vec3> positions;
   for (const Mass& mass : body.masses) positions.push_back(mass.rest);
   EXPECT_NEAR(centre_of_mass(body, positions).x, 0, 1e-15) << "over the origin with its load";
-}
 
-TEST(BodyBuilding, HeldMassesCarryNoLoad) {
-  Body body;
+  body = {};
   for (const double mass : {0.0, 0.2}) body.masses.push_back({{0, 0, 1}, mass});
   add_payload(body, 1.5, 0.2);
-  EXPECT_EQ(body.masses[0].mass, 0);
+  EXPECT_EQ(body.masses[0].mass, 0) << "held masses carry none";
   EXPECT_DOUBLE_EQ(body.masses[1].payload, 0.3);
 }
 
 TEST(BodyBuilding, SaysWhyThereIsNoBody) {
+  EXPECT_THAT(build_body(row({{1, 0}, {1, 0}, {1, 0}}, 2)).failure, testing::naming("no extent"));
+  const BuiltBody coincident = build_body(row({{1, 0}, {1, 0}, {2, 0}}, 2));
+  EXPECT_EQ(coincident.failure, "");
+  EXPECT_EQ(coincident.body.springs.size(), 3u);
   EXPECT_THAT(build_body(row({}, 3)).failure, testing::at_place("no body: ", "masses"));
   EXPECT_THAT(build_body(row({{0, 0}}, 3)).failure, testing::naming("no springs"));
   EXPECT_THAT(build_body(row({{0, 1}, {1, 1}, {2, 1}}, 2)).failure, testing::naming("no springs")) << "all air";
-  EXPECT_THAT(build_body(row({{0, 0}, {std::numeric_limits<double>::quiet_NaN(), 0}}, 1)).failure,
-              testing::at_place("no body: ", "position", "not finite"));
-  Blueprint failed;
-  failed.failure = "nothing but air";
-  EXPECT_EQ(build_body(failed).failure, "no body: nothing but air");
-}
-
-TEST(BodyBuilding, CoincidentMassesMakeABodyUnlessAllAre) {
-  const BuiltBody built = build_body(row({{1, 0}, {1, 0}, {2, 0}}, 2));
-  EXPECT_EQ(built.failure, "");
-  EXPECT_EQ(built.body.springs.size(), 3u);
-  EXPECT_THAT(build_body(row({{1, 0}, {1, 0}, {1, 0}}, 2)).failure, testing::naming("no extent"));
+  EXPECT_THAT(build_body(row({{0, 0}, {nan, 0}}, 1)).failure, testing::at_place("no body: ", "position", "not finite"));
 }
 
 TEST(BodyBuilding, APopulationIsBuiltAsEachBodyAlone) {
-  std::vector<Blueprint> blueprints{row({{0, 0}, {1, 1}, {3, 0}, {3.5, 0}}, 2), row({}, 3),
-                                    row({{0, 1}, {1, 1}, {2, 1}}, 2), row({{0, 0}, {1, 0}, {10, 0}, {10.5, 0}}, 1)};
-  // a body whose encoding gives it springs
-  blueprints.push_back(row({{0, 0}, {1, 0}, {5, 0}}, 0));
-  blueprints.back().body.springs = {{1, 2, 4, 0}};
-  blueprints.push_back(blueprints.front());
-  blueprints.back().sizes = {{1, 1.25}, {0.75, 1}, {1.25, 0.75}, {1.5, 1}};
+  const auto four = row({{0, 0}, {1, 1}, {3, 0}, {3.5, 0}}, 2);
+  std::vector<Blueprint> blueprints{four,
+                                    four,
+                                    row({}, 3),
+                                    row({{0, 1}, {1, 1}, {2, 1}}, 2),
+                                    row({{0, 0}, {1, 0}, {10, 0}, {10.5, 0}}, 1),
+                                    row({{0, 0}, {1, 0}, {5, 0}}, 0)};
+  blueprints[0].sizes = {{1, 1.25}, {0.75, 1}, {1.25, 0.75}, {1.5, 1}};
+  blueprints.back().body.springs = {{1, 2, 4, 0}};  // from the encoding
   for (const int threads : {1, 3}) {
     Workers workers(threads);
     const std::vector<BuiltBody> together = build_bodies(blueprints, *make_cpu_neighbour_search(), workers);
     ASSERT_EQ(together.size(), blueprints.size());
     for (std::size_t i = 0; i < blueprints.size(); ++i) {
       const BuiltBody alone = build_body(blueprints[i]);
-      EXPECT_EQ(together[i].failure, alone.failure) << i;
-      EXPECT_EQ(together[i].body.materials, alone.body.materials) << i;
-      ASSERT_EQ(together[i].body.masses.size(), alone.body.masses.size()) << i;
-      for (std::size_t m = 0; m < alone.body.masses.size(); ++m)
-        EXPECT_EQ(together[i].body.masses[m].rest, alone.body.masses[m].rest) << i;
-      ASSERT_EQ(together[i].body.springs.size(), alone.body.springs.size()) << i;
-      for (std::size_t s = 0; s < alone.body.springs.size(); ++s) {
-        const Spring &a = together[i].body.springs[s], &b = alone.body.springs[s];
-        EXPECT_EQ(std::tie(a.a, a.b, a.rest_length, a.material, a.growth),
-                  std::tie(b.a, b.b, b.rest_length, b.material, b.growth))
-            << i;
-      }
+      SCOPED_TRACE(i);
+      EXPECT_EQ(together[i].failure, alone.failure);
+      testing::expect_same_body(together[i].body, alone.body);
     }
   }
+}
+
+/// Random numbers of all magnitudes, with all their digits.
+class Awkward {
+ public:
+  double any() {
+    const double size = std::pow(10, 40 * (rng_.uniform() - 0.5));
+    return (rng_.uniform() - 0.5) * size / 3;
+  }
+  double positive() { return std::abs(any()) + std::numeric_limits<double>::min(); }
+  Vec3 position() {
+    const double x = any(), y = any(), z = any();
+    return {x, y, z};
+  }
+
+ private:
+  Rng rng_{philox, {1, 2, 3, 4}};
+};
+
+GivenBody awkward_body(bool lives) {
+  Awkward number;
+  GivenBody given;
+  for (int i = 0; i < 3; ++i)
+    given.body.materials.push_back({number.positive(), number.positive(), number.positive(), number.any()});
+  for (int i = 0; i < 50; ++i) given.body.masses.push_back({number.position(), number.positive(), i % 4 - 1});
+  for (std::uint32_t i = 1; i < 50; ++i) given.body.springs.push_back({i - 1, i, number.positive(), i % 3});
+  for (std::size_t i = 0; i < 40; ++i) given.body.springs[i].stiffness_factor = number.positive();
+  given.body.masses[0].rest = {-0.0, 5e-324, std::numeric_limits<double>::max()};
+  if (!lives) return given;
+  State& state = given.state.emplace();
+  for (const Mass& mass : given.body.masses) {
+    state.position.push_back(mass.rest);
+    state.velocity.push_back(number.position());
+  }
+  state.time = number.positive();
+  state.start_energy = number.any();
+  return given;
+}
+
+/// Reads a body from a file with this text.
+GivenBody body_from(const std::string& text) {
+  const testing::Scratch scratch;
+  return read_body(scratch.write("body.json", text));
+}
+
+TEST(BodyJson, ComesBackBitForBit) {
+  for (const bool lives : {false, true}) {
+    SCOPED_TRACE(lives ? "a life under way" : "a newborn");
+    const GivenBody given = awkward_body(lives);
+    const GivenBody back = body_from(body_to_json(given, {"air", "bone"}));
+    testing::expect_same_body(given.body, back.body);
+    EXPECT_TRUE(lives || std::signbit(back.body.masses[0].rest.x));
+    ASSERT_EQ(back.state.has_value(), lives);
+    if (!lives) continue;
+    EXPECT_EQ(given.state->position, back.state->position);
+    EXPECT_EQ(given.state->velocity, back.state->velocity);
+    EXPECT_EQ(std::pair(given.state->time, given.state->start_energy),
+              std::pair(back.state->time, back.state->start_energy));
+  }
+}
+
+TEST(BodyJson, APlaceIsWhereTheMassIsNow) {
+  GivenBody given = awkward_body(true);
+  given.state->position[7] = {1, 2, 3};
+  const auto json = nlohmann::json::parse(body_to_json(given, {}));
+  EXPECT_EQ(json.at("masses").at(7).at("position"), nlohmann::json({1.0, 2.0, 3.0}));
+}
+
+TEST(BodyJson, WhatIsNoNumberIsRefusedWhereOneIsExpected) {
+  const auto json = nlohmann::json::parse(body_to_json(awkward_body(false), {"air", "bone"}));
+  for (const nlohmann::json& value :
+       std::vector<nlohmann::json>{true, "1", nullptr, nlohmann::json::array({1}), nlohmann::json::object()}) {
+    auto changed = json;
+    changed.at("masses").at(3).at("mass") = value;
+    EXPECT_THAT([&] { body_from(changed.dump()); },
+                ::testing::ThrowsMessage<ConfigError>(testing::naming("masses[3].mass", "number", value.dump())));
+  }
+}
+
+TEST(BodyJson, AMessageQuotesUpTo60Bytes) {
+  const auto complaint = [](std::size_t letters) {
+    return testing::refusal<ConfigError>([&] { body_from('"' + std::string(letters, 'x') + '"'); });
+  };
+  EXPECT_THAT(complaint(58), ::testing::AllOf(::testing::HasSubstr('"' + std::string(58, 'x') + '"'),
+                                              ::testing::Not(::testing::HasSubstr("..."))));
+  EXPECT_THAT(complaint(59), ::testing::HasSubstr('"' + std::string(59, 'x') + "..."));
 }
 
 }  // namespace

@@ -1,16 +1,17 @@
-// Distances between developed bodies.
+// Distances between developed bodies, and the frame of reference in which they are compared.
 #include "environments/body_distance.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
 #include "base/philox.hpp"
-#include "evolution/breeding.hpp"
 #include "life/birth.hpp"
-#include "support/experiments.hpp"
+#include "support/changed.hpp"
+#include "support/lives.hpp"
 
 namespace evodevo::EVODEVO_FILE {
 namespace {
@@ -98,16 +99,13 @@ TEST(BodyDistance, OfMassIsHowFarItHasToBeMoved) {
   EXPECT_NEAR(mass_distance(body, cloud(twice)), 0, 1e-15) << "as much mass at each place, in parts";
 }
 
-TEST(BodyDistance, OfMassGoesByMassAndNotByLoad) {
+TEST(BodyDistance, OfMassHeedsNeitherLoadNorOrderNorNumberNorPose) {
   const GrownBody body = cloud({{0, 0, 0}, {1, 0, 0}});
   GrownBody heavy = body;
   heavy.body.masses[1].mass = 3;
   EXPECT_DOUBLE_EQ(mass_distance(body, heavy), 0.25 / 3) << "a quarter of all comes from the first place";
   heavy.body.masses[1].payload = 2;
   EXPECT_EQ(mass_distance(body, heavy), 0);
-}
-
-TEST(BodyDistance, OfMassHeedsNeitherOrderNorNumberNorPose) {
   const std::vector<Vec3> positions{{0, 3, 1}, {2, 0, 5}, {1, 1, 0}, {7, 0, 0}};
   GrownBody other = chain({positions[2], positions[0], positions[3], positions[1]}, {8, 1, 9, 4}, 2);
   for (Vec3& position : other.positions) position = position + Vec3{5, 5, 5};
@@ -134,82 +132,138 @@ TEST(BodyDistance, OfMassIsTheCheapestWayToCarryItAlongEachAxis) {
   EXPECT_NEAR(mass_distance(cloud(a), cloud(b)), expected, 1e-14);
 }
 
-TEST(BodyDistance, OfMassIsAPseudometric) {
-  Rng rng(philox, {.seed = 6});
-  for (int trial = 0; trial < 50; ++trial) {
-    const GrownBody a = cloud(random_places(1 + rng.below(5), rng)), b = cloud(random_places(1 + rng.below(5), rng)),
-                    c = cloud(random_places(1 + rng.below(5), rng));
-    EXPECT_EQ(mass_distance(a, a), 0);
-    EXPECT_GT(mass_distance(a, b), 0);
-    EXPECT_EQ(mass_distance(a, b), mass_distance(b, a));
-    EXPECT_LE(mass_distance(a, c), mass_distance(a, b) + mass_distance(b, c) + 1e-14);
-  }
-}
-
-/// The bodies that one random genome develops from `starts` starts.
-std::vector<GrownBody> grown_from_starts(const Experiment& experiment, std::uint32_t starts, bool noise) {
-  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
-  const Individual individual = breed(experiment, {}, 0, 4, 1).front();
-  const Evaluation evaluation(experiment, *simulator);
-  std::vector<Life> lives = evaluation.birth.of(std::vector<Newborn>(starts, {individual.id, 0, &individual.genome}));
-  std::vector<GrowthObserver> observers(starts, GrowthObserver(lives.front().living.body));
-  for (std::uint32_t i = 0; noise && i < starts; ++i) perturb(lives[i], experiment, i);
-  std::vector<GrownBody> bodies(starts);
-  evaluation.development.run(lives, [&](double) {
-    for (std::size_t i = 0; i < starts; ++i) bodies[i] = observers[i].after_cycle(lives[i]);
-  });
-  return bodies;
-}
-
-/// The small experiment with an additional operator.
-Experiment experiment_with(const std::string& devo, std::vector<Override> overrides = {}) {
-  std::string text = testing::small_experiment;
-  text.insert(text.find("[[fitness]]"), "[[development.operator]]\n" + devo + "\n");
-  overrides.insert(overrides.begin(), {{"encoding.size", "[3, 2, 2]", ""}, {"development.cycle_time", "0.2", ""}});
-  return testing::read(text, overrides);
-}
-
-TEST(BodyDistance, OfTwoLivesOfOneGenomeIsZeroWithoutNoiseAlone) {
-  const Experiment experiment =
-      experiment_with("name = \"mass-turnover\"\nthreshold = 100\nlimit = 2", {{"development.cycles", "30", ""}});
-  const auto quiet = grown_from_starts(experiment, 2, false), noisy = grown_from_starts(experiment, 2, true);
-  ASSERT_FALSE(quiet[0].body.springs.empty());
-  EXPECT_GE(*std::max_element(quiet[0].numbers.begin(), quiet[0].numbers.end()), quiet[0].born) << "no mass has come";
-  EXPECT_EQ(spring_distance(quiet[0], quiet[1]), 0);
-  EXPECT_EQ(mass_distance(quiet[0], quiet[1]), 0);
-  EXPECT_GT(spring_distance(noisy[0], noisy[1]), 0);
-  EXPECT_GT(mass_distance(noisy[0], noisy[1]), 0);
+/// The body that one genome develops in the small experiment with an additional operator and the given values.
+GrownBody grown(const std::string& devo, std::vector<std::string> values) {
+  values.insert(values.end(), {"encoding.size=[3, 2, 2]", "development.cycle_time=0.2"});
+  const std::string text =
+      testing::small_with({{"springs = 2\n", "springs = 2\n[[development.operator]]\n" + devo + "\n"}});
+  const Experiment experiment = testing::read(text, testing::overrides(values));
+  testing::AlteredSimulator simulator(experiment);
+  const std::vector<Individual> individuals = breed(experiment, {}, 0, 4, 1);
+  const Evaluation evaluation(experiment, simulator);
+  std::vector<Life> lives = evaluation.birth.of(testing::newborns_of(individuals));
+  GrowthObserver observer(lives.front().living.body);
+  GrownBody body;
+  evaluation.development.run(lives, [&](double) { body = observer.after_cycle(lives.front()); });
+  return body;
 }
 
 TEST(BodyDistance, SeesThatTwoScenesLetMassesComeElsewhere) {
   const std::string growth = "name = \"mass-growth\"\nmasses = 3\nwhere = \"by-stress\"";
-  const std::vector<Override> flat{{"development.cycles", "6", ""}};
-  std::vector<Override> slope = flat;
-  slope.push_back({"scene.gravity.slope", "30", ""});
-  const GrownBody a = grown_from_starts(experiment_with(growth, flat), 1, false).front(),
-                  b = grown_from_starts(experiment_with(growth, slope), 1, false).front();
+  const GrownBody a = grown(growth, {"development.cycles=6"}),
+                  b = grown(growth, {"development.cycles=6", "scene.gravity.slope=30"});
   ASSERT_EQ(a.body.masses.size(), a.born + 18);
   ASSERT_EQ(a.numbers, b.numbers) << "as many masses have come, so that numbers tell nothing";
   EXPECT_GT(mass_distance(a, b), 1e-4);
   EXPECT_GT(spring_distance(a, b), 0.1);
 }
 
-TEST(BodyDistance, OfBodiesThatDidNotDevelopIsZeroWhateverTheScene) {
-  const std::vector<Override> still{{"development.control", "no-change", ""}};
-  const std::string none = "name = \"mass-growth\"";
-  std::vector<Override> slope = still, load = still;
-  slope.push_back({"scene.gravity.slope", "30", ""});
-  load.push_back({"scene.payload.share", "0.3", ""});
-  const GrownBody flat = grown_from_starts(experiment_with(none, still), 1, false).front(),
-                  on_slope = grown_from_starts(experiment_with(none, slope), 1, false).front(),
-                  loaded = grown_from_starts(experiment_with(none, load), 1, false).front();
-  EXPECT_NE(flat.positions, on_slope.positions);
-  EXPECT_EQ(mass_distance(flat, on_slope), 0);
-  EXPECT_EQ(spring_distance(flat, on_slope), 0);
+TEST(BodyDistance, OfBodiesThatDidNotDevelopIsZeroWhateverTheyCarry) {
+  const std::string still = "development.control=no-change", none = "name = \"mass-growth\"";
+  const GrownBody flat = grown(none, {still}), loaded = grown(none, {still, "scene.payload.share=0.3"});
   // the payload shifts the body; adding the payload to masses and later subtracting it causes rounding errors
   EXPECT_NE(flat.body.masses.back().rest, loaded.body.masses.back().rest);
   EXPECT_NEAR(mass_distance(flat, loaded), 0, 1e-14);
   EXPECT_EQ(spring_distance(flat, loaded), 0);
+}
+
+/// Returns `p` rotated by the angle `angle` about the z axis and then about the x axis, and shifted.
+Vec3 moved(Vec3 p, double angle, Vec3 shift) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  p = {c * p.x - s * p.y, s * p.x + c * p.y, p.z};
+  return Vec3{p.x, c * p.y - s * p.z, s * p.y + c * p.z} + shift;
+}
+
+std::vector<Vec3> all_moved(std::vector<Vec3> positions, double angle, Vec3 shift) {
+  for (Vec3& position : positions) position = moved(position, angle, shift);
+  return positions;
+}
+
+void expect_near(Vec3 a, Vec3 b, double tolerance = 1e-12) { EXPECT_LE(norm(a - b), tolerance); }
+
+const std::vector<Vec3> tetrahedron{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 1}};
+constexpr Vec3 far_away{3, -2, 5};
+
+TEST(Undeformed, UndoesARigidMotion) {
+  const std::vector<Vec3> positions = all_moved(tetrahedron, 2, far_away);
+  for (const Vec3 rest : {Vec3{0.1, 0.2, 0.3}, Vec3{-2, 1, 4}, tetrahedron[2]})
+    expect_near(undeformed(moved(rest, 2, far_away), positions, tetrahedron), rest);
+}
+
+TEST(Undeformed, MirrorsNothing) {
+  const std::vector<Vec3> flat{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+  const Vec3 above{0.3, 0.4, 0.5};
+  for (const double angle : {0.0, 1.0, 2.0, 3.0, 4.0, 5.0})
+    expect_near(undeformed(moved(above, angle, far_away), all_moved(flat, angle, far_away), flat), above);
+}
+
+TEST(Undeformed, GoesAlongWithTheMassesAroundIt) {
+  // two pieces ten body lengths apart, each rotated separately
+  std::vector<Vec3> rest = tetrahedron;
+  for (const Vec3& position : tetrahedron) rest.push_back(position + Vec3{10, 0, 0});
+  std::vector<Vec3> positions = all_moved(tetrahedron, 1, {0, 0, 0});
+  for (const Vec3& position : tetrahedron) positions.push_back(moved(position, -0.5, {10, 0, 0}));
+  const Vec3 inside{0.2, 0.3, 0.2};
+  expect_near(undeformed(moved(inside, 1, {0, 0, 0}), positions, rest), inside, 0.01);
+  expect_near(undeformed(moved(inside, -0.5, {10, 0, 0}), positions, rest), inside + Vec3{10, 0, 0}, 0.01);
+  // at the position of a mass, the result is the rest position of that mass, independently of the others
+  expect_near(undeformed(positions[1], positions, rest), rest[1], 1e-9);
+}
+
+Life newborn(const std::vector<Vec3>& rest) {
+  Life life;
+  for (const Vec3& position : rest) life.living.body.masses.push_back({position, 1});
+  life.living.state.position = rest;
+  life.living.numbers = MassNumbers(rest.size());
+  return life;
+}
+
+/// Adds a mass at a position and removes another one, as devo operators do.
+void replace_mass(Life& life, Vec3 position, std::uint32_t goes) {
+  LivingBody& living = life.living;
+  living.body.masses.push_back({position, 1});
+  living.body.masses.erase(living.body.masses.begin() + goes);
+  living.state.position.push_back(position);
+  living.state.position.erase(living.state.position.begin() + goes);
+  living.numbers.apply({.removed_masses = {goes}, .new_masses = {{position, 1}}});
+}
+
+TEST(GrowthObserver, MassesOfBirthKeepTheirRestPlacesInBodyLengthsFromTheCorner) {
+  Life life = newborn(all_moved(tetrahedron, 0, far_away));
+  GrowthObserver growth(life.living.body);
+  life.living.state.position = {{1, 2, 3}, {9, 8, 7}, {0, 1, 0}, {4, 4, 1}};
+  const GrownBody grown = growth.after_cycle(life);
+  EXPECT_EQ(grown.positions, life.living.state.position);
+  EXPECT_EQ(grown.born, 4u);
+  EXPECT_EQ(grown.numbers, (std::vector<std::uint32_t>{0, 1, 2, 3}));
+  EXPECT_EQ(grown.rest_positions, (std::vector<Vec3>{{0, 0, 0}, {0.5, 0, 0}, {0, 1, 0}, {0, 0, 0.5}}));
+}
+
+TEST(GrowthObserver, AMassThatComesKeepsTheRestPlaceThatItCameTo) {
+  Life life = newborn(tetrahedron);
+  GrowthObserver growth(life.living.body);
+  const Vec3 rest{0.2, 0.6, 0.4};
+  life.living.state.position = all_moved(tetrahedron, 1, far_away);
+  replace_mass(life, moved(rest, 1, far_away), 0);
+  const GrownBody first = growth.after_cycle(life);
+  EXPECT_EQ(first.numbers, (std::vector<std::uint32_t>{1, 2, 3, 4}));
+  expect_near(first.rest_positions[3], 0.5 * rest);
+
+  for (Vec3& position : life.living.state.position) position = {position.z, 2 * position.x, 0};
+  const GrownBody second = growth.after_cycle(life);
+  EXPECT_EQ(second.rest_positions, first.rest_positions);
+}
+
+TEST(GrowthObserver, WhereNoMassOfBeforeIsLeftThoseThatComeBelongWhereTheyAre) {
+  Life life = newborn({{0, 0, 0}});
+  GrowthObserver growth(life.living.body);
+  replace_mass(life, {1, 2, 3}, 0);
+  EXPECT_EQ(growth.after_cycle(life).rest_positions, (std::vector<Vec3>{{1, 2, 3}}));
+}
+
+TEST(GrowthObserver, ABodyWithoutExtentHasPlacesAllTheSame) {
+  Life life = newborn({{1, 1, 1}, {1, 1, 1}});
+  EXPECT_EQ(GrowthObserver(life.living.body).after_cycle(life).rest_positions, std::vector<Vec3>(2));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Controls of development, schedules of its operators, and bodies that development tears apart.
+// Controls of development, and schedules of its operators.
 #include "life/controls.hpp"
 
 #include <gmock/gmock.h>
@@ -9,12 +9,15 @@
 #include <set>
 
 #include "base/philox.hpp"
-#include "evolution/breeding.hpp"
-#include "life/evaluation.hpp"
-#include "support/experiments.hpp"
+#include "support/changed.hpp"
+#include "support/lives.hpp"
+#include "support/told.hpp"
 
 namespace evodevo::EVODEVO_FILE {
 namespace {
+
+using ::testing::ElementsAre;
+using testing::Told;
 
 const Material bone{10000, 0, 0, 0};
 const Material muscle{5000, 0.14, 1, 0};
@@ -113,8 +116,8 @@ TEST(RandomPlaces, AnyMaterialGoesWhereNoneOfItsOwnIsLeft) {
   std::size_t surplus = 0;
   const Edits moved = ring.moved({.springs_gone = Kinds(41, {muscle})}, 1, surplus);
   ASSERT_EQ(moved.removed_springs.size(), 41u);
-  const auto is_muscle = [&](std::uint32_t s) { return ring.living.body.springs[s].material == 1; };
-  EXPECT_EQ(std::count_if(moved.removed_springs.begin(), moved.removed_springs.end(), is_muscle), 40);
+  const auto material = [&](std::uint32_t s) { return ring.living.body.springs[s].material; };
+  EXPECT_EQ(std::ranges::count(moved.removed_springs, 1u, material), 40) << "all of muscle";
   const Material tissue{4000, 0, 0, 0};
   EXPECT_EQ(ring.moved({.springs_gone = Kinds(2, {tissue})}, 1, surplus).removed_springs.size(), 2u);
   EXPECT_EQ(ring.moved({.springs_gone = Kinds(81, {bone})}, 1, surplus).removed_springs.size(), 80u);
@@ -151,26 +154,25 @@ TEST(RandomPlaces, AllPlacesAreReachedAlike) {
       ++joined[spring.b];
     }
   }
-  for (const int count : gone_springs) EXPECT_NEAR(count, 100, 50);  // five standard deviations
-  for (const int count : gone_masses) EXPECT_NEAR(count, 100, 50);
-  for (const int count : joined) EXPECT_NEAR(count, 100, 50);
+  for (const auto& counts : {gone_springs, gone_masses, joined})
+    EXPECT_THAT(counts, ::testing::Each(::testing::AllOf(::testing::Ge(50), ::testing::Le(150))));  // five deviations
   EXPECT_NEAR(height, 0.5, 0.04);
 }
 
 TEST(RandomPlaces, SpringsOfTheSameMaterialChangeByTheSameFactors) {
   const Ring ring;
+  const Spring& before = ring.living.body.springs[3];
+  ASSERT_EQ(before.material, 1u);
+  const ChangedSpring wanted{
+      .spring = 3, .rest_length = 0.9 * before.rest_length, .material = Material{5000, 0.2, 1, 0}};
   std::set<std::uint32_t> reached;
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
-    const Spring& before = ring.living.body.springs[3];
-    ASSERT_EQ(before.material, 1u);
-    const Material stronger{5000, 0.2, 1, 0};
-    const Edits moved = ring.moved(
-        {.changed_springs = {{.spring = 3, .rest_length = 0.9 * before.rest_length, .material = stronger}}}, seed);
+    const Edits moved = ring.moved({.changed_springs = {wanted}}, seed);
     ASSERT_EQ(moved.changed_springs.size(), 1u);
     const ChangedSpring& change = moved.changed_springs[0];
     const Spring& other = ring.living.body.springs[change.spring];
     EXPECT_EQ(other.material, 1u);
-    EXPECT_EQ(change.material, stronger);
+    EXPECT_EQ(change.material, wanted.material);
     EXPECT_NEAR(*change.rest_length, 0.9 * other.rest_length, 1e-12);
     reached.insert(change.spring);
   }
@@ -196,12 +198,11 @@ TEST(RandomPlaces, SpringsOfTheSameKindBecomeAsStiff) {
 }
 
 TEST(RandomPlaces, GrowthHappensAsItIs) {
-  const Ring ring;
-  const Edits moved = ring.moved({.growth = Growth{1, 2, 5}}, 1);
+  const Edits moved = Ring().moved({.growth = Growth{1, 2, 5}}, 1);
   ASSERT_TRUE(moved.growth.has_value());
   EXPECT_EQ(std::tuple(moved.growth->from, moved.growth->to, moved.growth->whole), std::tuple(1, 2, 5));
   EXPECT_TRUE(moved.changed_springs.empty());
-  EXPECT_FALSE(ring.moved(some_of_everything(), 1).growth.has_value());
+  EXPECT_FALSE(Ring().moved(some_of_everything(), 1).growth.has_value());
 }
 
 TEST(RandomPlaces, FewerComeWhereThereIsNoRoom) {
@@ -209,8 +210,7 @@ TEST(RandomPlaces, FewerComeWhereThereIsNoRoom) {
   ring.living.body.masses.resize(3);
   ring.living.body.springs = {{0, 1, 1, 0}, {1, 2, 1, 0}};
   ring.living.stress = {1, 2};
-  const Edits moved = ring.moved({.new_springs = {{0, 2, bone, {}}, {0, 2, bone, {}}}}, 1);
-  EXPECT_EQ(moved.new_springs.size(), 1u);
+  EXPECT_EQ(ring.moved({.new_springs = {{0, 2, bone, {}}, {0, 2, bone, {}}}}, 1).new_springs.size(), 1u);
   EXPECT_TRUE(ring.moved(Edits{}, 1).empty());
 }
 
@@ -224,322 +224,188 @@ struct Seen {
 };
 
 /// An operator that records its contexts and changes nothing.
-class Watcher final : public Devo {
- public:
-  explicit Watcher(Seen& seen, RecordRequest request = {.stress = true}) : seen_(seen), request_(request) {}
-  RecordRequest observes() const override { return request_; }
-  void develop(const DevoContext& context, Edits&, Rng&) const override {
-    if (request_.stress) seen_.stress.emplace_back(context.stress.begin(), context.stress.end());
-    if (request_.peak_force) seen_.peak_force.emplace_back(context.peak_force.begin(), context.peak_force.end());
-    seen_.applications.emplace_back(context.application, context.applications);
-    seen_.cycles.push_back(context.cycle);
-  }
-
- private:
-  Seen& seen_;
-  RecordRequest request_;
-};
-
-/// An operator whose edits do not depend on the body.
-class Fixed final : public Devo {
- public:
-  explicit Fixed(Edits edits) : edits_(std::move(edits)) {}
-  void develop(const DevoContext&, Edits& edits, Rng&) const override { edits = edits_; }
-
- private:
-  Edits edits_;
-};
-
-Life matured(const Experiment& experiment, Simulator& simulator, std::uint32_t id = 0) {
-  static const Genome genome = {1, 2};
-  const Newborn newborn{id, 0, &genome};
-  const Evaluation evaluation(experiment, simulator);
-  std::vector<Life> lives = evaluation.birth.of({&newborn, 1});
-  evaluation.development.run(lives, [](double) {});
-  return std::move(lives.front());
+std::unique_ptr<Devo> watcher(Seen& seen, RecordRequest request = {.stress = true}) {
+  return std::make_unique<Told>(request, [&seen, request](const DevoContext& context, Edits&) {
+    if (request.stress) seen.stress.emplace_back(context.stress.begin(), context.stress.end());
+    if (request.peak_force) seen.peak_force.emplace_back(context.peak_force.begin(), context.peak_force.end());
+    seen.applications.emplace_back(context.application, context.applications);
+    seen.cycles.push_back(context.cycle);
+  });
 }
 
 Life matured(const Experiment& experiment, std::uint32_t id = 0) {
-  return matured(experiment, *make_cpu_simulator(experiment.scene, experiment.stepping, 1), id);
+  static const Genome genome = {1, 2};
+  const Newborn newborn{id, 0, &genome};
+  return testing::Developed(experiment, {&newborn, 1}, 1).lives.front();
 }
 
-Experiment with_control(const char* control) {
-  return testing::read(testing::small_experiment, {{"development.control", control, "--set"}});
-}
+Experiment with_control(const std::string& control) { return testing::small({"development.control=" + control}); }
 
-Seen watch(Experiment experiment, std::uint32_t id = 0) {
+Seen watch(Experiment experiment) {
   Seen seen;
-  for (Scheduled& scheduled : experiment.devo) scheduled.op = std::make_unique<Watcher>(seen);
-  EXPECT_EQ(matured(experiment, id).result.status, Status::ok);
+  experiment.devo.at(0).op = watcher(seen);
+  EXPECT_EQ(matured(experiment).result.status, Status::ok);
   return seen;
 }
 
 TEST(Control, NoChangeTakesTheSameTimeAndSprings) {
   Seen seen;
   Experiment experiment = with_control("no-change");
-  experiment.devo[0].op = std::make_unique<Watcher>(seen);
+  experiment.devo[0].op = watcher(seen);
   const Life still = matured(experiment), developed = matured(with_control("off"));
   EXPECT_TRUE(seen.stress.empty());
   EXPECT_EQ(still.living.state.time, developed.living.state.time);
   EXPECT_NEAR(still.living.state.time, 0.1, 1e-12);
-  ASSERT_EQ(still.living.body.springs.size(), developed.living.body.springs.size());
   EXPECT_EQ(still.result.spring_evaluations, 50u * 200) << "springs times steps";
   EXPECT_EQ(developed.result.spring_evaluations, 50u * 200);
   EXPECT_TRUE(still.result.record.empty());
   EXPECT_NE(still.living.state.position, developed.living.state.position);
 }
 
-TEST(Control, ShuffledStressIsTheSameStressInAnotherOrder) {
-  const Seen off = watch(with_control("off")), shuffled = watch(with_control("shuffled-stress"));
-  ASSERT_EQ(off.stress.size(), 2u);
-  ASSERT_EQ(shuffled.stress.size(), 2u);
-  for (std::size_t cycle = 0; cycle < 2; ++cycle) {
-    EXPECT_NE(shuffled.stress[cycle], off.stress[cycle]);
-    EXPECT_THAT(shuffled.stress[cycle], ::testing::UnorderedElementsAreArray(off.stress[cycle]));
-  }
-  EXPECT_EQ(watch(with_control("shuffled-stress")).stress, shuffled.stress) << "the same when lived again";
-  EXPECT_NE(watch(with_control("shuffled-stress"), 1).stress, shuffled.stress) << "but not for another individual";
-}
-
-TEST(Control, ShufflesAllThatIsKnownOfASpringTogether) {
-  const auto pairs_of = [](const char* control) {
+TEST(Control, ShuffledStressIsTheSameInAnotherOrderWithAllThatIsKnownOfASpringTogether) {
+  const auto pairs_of = [](const char* control, std::uint32_t id = 0) {
     Seen seen;
     Experiment experiment = with_control(control);
-    for (Scheduled& scheduled : experiment.devo)
-      scheduled.op = std::make_unique<Watcher>(seen, RecordRequest{.stress = true, .peak_force = true});
-    matured(experiment);
-    std::vector<std::pair<double, double>> pairs;
-    for (std::size_t s = 0; s < seen.stress.at(0).size(); ++s)
-      pairs.emplace_back(seen.stress[0][s], seen.peak_force.at(0).at(s));
-    return pairs;
+    experiment.devo[0].op = watcher(seen, {.stress = true, .peak_force = true});
+    matured(experiment, id);
+    std::vector<std::vector<std::pair<double, double>>> cycles(seen.stress.size());
+    for (std::size_t cycle = 0; cycle < cycles.size(); ++cycle)
+      for (std::size_t s = 0; s < seen.stress[cycle].size(); ++s)
+        cycles[cycle].emplace_back(seen.stress[cycle][s], seen.peak_force.at(cycle).at(s));
+    return cycles;
   };
   const auto off = pairs_of("off"), shuffled = pairs_of("shuffled-stress");
-  ASSERT_EQ(off.size(), 50u);
-  EXPECT_NE(shuffled, off);
-  EXPECT_THAT(shuffled, ::testing::UnorderedElementsAreArray(off));
+  ASSERT_EQ(off.size(), 2u);
+  ASSERT_EQ(shuffled.size(), 2u);
+  for (std::size_t cycle = 0; cycle < 2; ++cycle) {
+    EXPECT_EQ(off[cycle].size(), 50u);
+    EXPECT_NE(shuffled[cycle], off[cycle]);
+    EXPECT_THAT(shuffled[cycle], ::testing::UnorderedElementsAreArray(off[cycle]));
+  }
+  EXPECT_EQ(pairs_of("shuffled-stress"), shuffled) << "the same when lived again";
+  EXPECT_NE(pairs_of("shuffled-stress", 1), shuffled) << "but not for another individual";
 }
 
 TEST(Development, OperatorsSeeWhatTheyAskForAlone) {
   Seen nothing, peak;
   Experiment experiment = with_control("off");
-  auto& operators = experiment.devo;
-  operators.clear();
-  operators.push_back({std::make_unique<Watcher>(nothing, RecordRequest{}), {}});
-  operators.push_back({std::make_unique<Watcher>(peak, RecordRequest{.peak_force = true}), {.from = 2}});
+  experiment.devo.clear();
+  experiment.devo.push_back({watcher(nothing, {}), {}});
+  experiment.devo.push_back({watcher(peak, {.peak_force = true}), {.from = 2}});
   EXPECT_FALSE(recording(cycle_request(experiment, 1)).of_springs()) << "the second comes later";
   EXPECT_TRUE(recording(cycle_request(experiment, 2)).peak_force);
   EXPECT_FALSE(recording(cycle_request(experiment, 2)).stress);
   matured(experiment);
-  EXPECT_EQ(nothing.cycles, (std::vector<int>{1, 2}));
+  EXPECT_THAT(nothing.cycles, ElementsAre(1, 2));
   ASSERT_EQ(peak.peak_force.size(), 1u);
   EXPECT_EQ(peak.peak_force[0].size(), 50u);
-}
-
-TEST(Control, RandomPlacesMoveWhatOperatorsWant) {
-  Experiment experiment = with_control("random-places");
-  const Edits edits{.removed_springs = {4}};
-  experiment.devo[0].op = std::make_unique<Fixed>(edits);
-  experiment.development.cycles = 1;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, int> gone;
-  const auto pairs_of = [](const Body& body) {
-    std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
-    for (const Spring& spring : body.springs) pairs.insert(std::minmax(spring.a, spring.b));
-    return pairs;
-  };
-  Experiment undeveloped = with_control("no-change");
-  const auto all = pairs_of(matured(undeveloped).living.body);
-  ASSERT_EQ(all.size(), 50u);
-  for (std::uint32_t id = 0; id < 40; ++id) {
-    const auto left = pairs_of(matured(experiment, id).living.body);
-    ASSERT_EQ(left.size(), 49u);
-    for (const auto& pair : all)
-      if (!left.contains(pair)) ++gone[pair];
-  }
-  EXPECT_GT(gone.size(), 15u) << "40 draws out of 50";
 }
 
 TEST(Control, OperatorsSeeTheLifeBeforeAloneAndItsCostDoesNotCount) {
   Seen seen;
   Experiment experiment = with_control("random-places");
-  experiment.devo[0].op = std::make_unique<Watcher>(seen);
+  experiment.devo[0].op = watcher(seen);
   const Life life = matured(experiment);
-  EXPECT_THAT(seen.cycles, ::testing::ElementsAre(1, 2));
+  EXPECT_THAT(seen.cycles, ElementsAre(1, 2));
   EXPECT_EQ(seen.stress, watch(with_control("off")).stress);
   EXPECT_EQ(life.result.spring_evaluations, 50u * 200);
   EXPECT_NEAR(life.living.state.time, 0.1, 1e-12);
 }
 
-/// Numbers of springs and masses that were removed and added in a cycle.
-struct Total {
-  std::size_t springs_gone = 0, springs_come = 0, masses_gone = 0, masses_come = 0;
-  friend bool operator==(const Total&, const Total&) = default;
-  friend void PrintTo(const Total& total, std::ostream* out) {
-    *out << "springs -" << total.springs_gone << " +" << total.springs_come << ", masses -" << total.masses_gone << " +"
-         << total.masses_come;
-  }
-};
-
-std::map<std::uint32_t, Total> totals(Body body, const LifeRecord& record) {
-  std::map<std::uint32_t, Total> totals;
+/// In each cycle, how many springs were removed and added, and how many masses.
+std::map<std::uint32_t, std::array<std::size_t, 4>> totals(Body body, const LifeRecord& record) {
+  std::map<std::uint32_t, std::array<std::size_t, 4>> totals;
   for (const Change& change : record.changes()) {
-    const std::size_t springs = body.springs.size();
+    const std::size_t springs = body.springs.size(), come = change.edits.new_springs.size();
     apply(change.edits, body);
     if (!change.op) continue;
-    Total& total = totals[change.cycle];
-    total.springs_gone += springs + change.edits.new_springs.size() - body.springs.size();
-    total.springs_come += change.edits.new_springs.size();
-    total.masses_gone += change.edits.removed_masses.size();
-    total.masses_come += change.edits.new_masses.size();
+    const std::size_t counts[] = {springs + come - body.springs.size(), come, change.edits.removed_masses.size(),
+                                  change.edits.new_masses.size()};
+    for (std::size_t i = 0; i < 4; ++i) totals[change.cycle][i] += counts[i];
   }
   return totals;
 }
 
-/// Random robots large enough for the paper's two operators.
-struct Population {
-  Experiment experiment;
-  std::vector<Individual> individuals;
-  std::vector<Newborn> newborns;
-  std::vector<Body> born;
-
-  explicit Population(const std::string& control)
-      : experiment(testing::read(text(), {{"development.control", control, "--set"}})),
-        individuals(breed(experiment, {}, 0, 0, 8)) {
-    for (const Individual& individual : individuals)
-      newborns.push_back({individual.id, individual.born, &individual.genome});
-  }
-
-  static std::string text() {
-    std::string text = testing::small_experiment;
-    const auto replace = [&](const std::string& from, const std::string& to, const std::string& by) {
-      const std::size_t begin = text.find(from);
-      text.replace(begin, text.find(to) - begin, by);
-    };
-    replace("[encoding]", "[[mutation]]", "[encoding]\nname = 'neural'\npoints = 100\nneighbours = 12\n");
-    replace("[[development.operator]]", "[[fitness]]",
-            "[[development.operator]]\nname = 'spring-turnover'\nsprings = 60\n"
-            "[[development.operator]]\nname = 'mass-turnover'\nthreshold = 14\nlimit = 2\nsprings = 12\n");
-    replace("cycles = 2", "cycle_time", "cycles = 4\n");
-    return text;
-  }
-
-  std::vector<Life> matured() {
-    const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
-    const Evaluation evaluation(experiment, *simulator);
-    std::vector<Life> lives = evaluation.birth.of(newborns);
-    for (const Life& life : lives) born.push_back(life.living.body);
-    evaluation.development.run(lives, [](double) {});
-    return lives;
-  }
-};
+/// An experiment with random robots large enough for the paper's two operators.
+Experiment large(const std::string& control) {
+  return testing::read(
+      testing::small_with({{"\"voxel\"\nsize = [2, 1, 1]\nedge = 0.5", "'neural'\npoints = 100\nneighbours = 12"},
+                           {"springs = 2",
+                            "springs = 60\n[[development.operator]]\nname = 'mass-turnover'\nthreshold = 14\n"
+                            "limit = 2\nsprings = 12"}}),
+      testing::overrides({"development.control=" + control, "development.cycles=4"}));
+}
 
 TEST(Control, RandomPlacesChangeAsMuchInEachCycleAsTheOperatorsDo) {
-  Population off("off"), random("random-places");
-  const std::vector<Life> developed = off.matured(), moved = random.matured();
-  Total all;
-  for (std::size_t i = 0; i < developed.size(); ++i) {
-    if (!developed[i].alive() || !moved[i].alive()) continue;
+  const testing::Developed developed(large("off"), 8), moved(large("random-places"), 8);
+  std::size_t springs_gone = 0, masses_gone = 0;
+  for (std::size_t i = 0; i < 8; ++i) {
+    const Life &one = developed.lives[i], &other = moved.lives[i];
+    if (!one.alive() || !other.alive()) continue;
     SCOPED_TRACE(i);
-    const auto expected = totals(off.born[i], developed[i].result.record);
-    EXPECT_EQ(totals(random.born[i], moved[i].result.record), expected);
-    EXPECT_FALSE(moved[i].result.record == developed[i].result.record);
-    for (const auto& [cycle, total] : expected) {
-      all.springs_gone += total.springs_gone;
-      all.masses_gone += total.masses_gone;
+    const auto expected = totals(developed.born[i], one.result.record);
+    EXPECT_EQ(totals(moved.born[i], other.result.record), expected);
+    EXPECT_FALSE(other.result.record == one.result.record);
+    for (const auto& [cycle, counts] : expected) {
+      springs_gone += counts[0];
+      masses_gone += counts[2];
     }
   }
-  EXPECT_GT(all.springs_gone, 100u) << "there must be something to compare";
-  EXPECT_GT(all.masses_gone, 20u);
+  EXPECT_GT(springs_gone, 100u) << "there must be something to compare";
+  EXPECT_GT(masses_gone, 20u);
 }
 
 TEST(Control, YokedLivesDoNotDependOnThreadsOrCompany) {
-  const Population population("random-places");
-  const Experiment& experiment = population.experiment;
-  const auto one = make_cpu_simulator(experiment.scene, experiment.stepping, 1),
-             three = make_cpu_simulator(experiment.scene, experiment.stepping, 3);
-  const auto unwatched = [](double) {};
-  const std::vector<Result> together = Evaluation(experiment, *three).evaluate(population.newborns, unwatched);
-  for (std::size_t i = 0; i < together.size(); ++i) {
-    const Result alone =
-        Evaluation(experiment, *one).evaluate(std::span(population.newborns).subspan(i, 1), unwatched).front();
-    EXPECT_EQ(alone.status, together[i].status);
-    EXPECT_EQ(alone.objectives, together[i].objectives);
-    EXPECT_TRUE(alone.record == together[i].record);
-  }
+  const Experiment experiment = large("random-places");
+  testing::expect_independent_lives(experiment, breed(experiment, {}, 0, 0, 8));
 }
 
 TEST(Control, NothingMoreChangesAfterTheYokesEnd) {
   /// A simulator in whose second run a body diverges. That run simulates the second cycle of the life that serves as
   /// yoke.
-  class Breaking final : public Simulator {
+  class Breaking final : public testing::AlteredSimulator {
    public:
-    explicit Breaking(std::unique_ptr<Simulator> simulator) : simulator_(std::move(simulator)) {}
+    using AlteredSimulator::AlteredSimulator;
     void run(std::span<Task> tasks, Recording recording) override {
-      simulator_->run(tasks, recording);
+      AlteredSimulator::run(tasks, recording);
       if (++runs_ == 2) tasks.front().status = Status::diverged;
     }
-    NeighbourSearch& neighbours() override { return simulator_->neighbours(); }
-    Workers& workers() override { return simulator_->workers(); }
-    std::string device() const override { return simulator_->device(); }
 
    private:
-    std::unique_ptr<Simulator> simulator_;
     int runs_ = 0;
   };
   Experiment experiment = with_control("random-places");
-  experiment.devo[0].op = std::make_unique<Fixed>(Edits{.removed_springs = {4}});
+  experiment.devo[0].op =
+      std::make_unique<Told>(RecordRequest{}, [](const DevoContext&, Edits& edits) { edits.removed_springs = {4}; });
   experiment.development.cycles = 3;
-  Breaking simulator(make_cpu_simulator(experiment.scene, experiment.stepping, 1));
-  const Life life = matured(experiment, simulator);
-  EXPECT_EQ(life.result.status, Status::ok);
-  EXPECT_EQ(life.living.body.springs.size(), 49u);
-  ASSERT_EQ(life.result.record.changes().size(), 1u);
-  EXPECT_EQ(life.result.record.changes()[0].cycle, 1u);
+  Breaking simulator(experiment);
+  const Genome genome{1, 2};
+  const Evaluation evaluation(experiment, simulator);
+  std::vector<Life> lives = evaluation.birth.of(std::vector<Newborn>{{0, 0, &genome}});
+  evaluation.development.run(lives, testing::unwatched);
+  EXPECT_EQ(lives[0].result.status, Status::ok);
+  EXPECT_EQ(lives[0].living.body.springs.size(), 49u);
+  ASSERT_EQ(lives[0].result.record.changes().size(), 1u);
+  EXPECT_EQ(lives[0].result.record.changes()[0].cycle, 1u);
 }
 
 // schedules ----------------------------------------------------------------------------------------------------------
 
-/// Returns what an operator with this schedule saw in a life of eight cycles.
-Seen scheduled(std::vector<Override> overrides) {
-  overrides.insert(overrides.begin(), {{"development.cycles", "8", "--set"}, {"development.cycle_time", "0.001", ""}});
-  return watch(testing::read(testing::small_experiment, std::move(overrides)));
-}
-
-TEST(Schedule, EarlyLateOnceAndNowAndThen) {
-  using ::testing::ElementsAre;
-  const std::string key = "development.operator.0.";
-  EXPECT_THAT(scheduled({}).cycles, ElementsAre(1, 2, 3, 4, 5, 6, 7, 8));
-  EXPECT_THAT(scheduled({{key + "to", "3", ""}}).cycles, ElementsAre(1, 2, 3));
-  EXPECT_THAT(scheduled({{key + "from", "7", ""}}).cycles, ElementsAre(7, 8));
-  EXPECT_THAT(scheduled({{key + "from", "5", ""}, {key + "to", "5", ""}}).cycles, ElementsAre(5));
-  EXPECT_THAT(scheduled({{key + "every", "3", ""}}).cycles, ElementsAre(1, 4, 7));
-  EXPECT_THAT(scheduled({{key + "from", "2", ""}, {key + "every", "3", ""}, {key + "to", "7", ""}}).cycles,
-              ElementsAre(2, 5));
-}
-
-TEST(Schedule, OperatorsKnowTheirTurns) {
-  const std::string key = "development.operator.0.";
-  using Turns = std::vector<std::pair<int, int>>;
-  EXPECT_EQ(scheduled({{key + "every", "3", ""}}).applications, (Turns{{1, 3}, {2, 3}, {3, 3}}));
-  EXPECT_EQ(scheduled({{key + "from", "7", ""}, {key + "to", "100", ""}}).applications, (Turns{{1, 2}, {2, 2}}));
-}
-
-// torn bodies --------------------------------------------------------------------------------------------------------
-
-TEST(Development, TheLargestPieceGoesOn) {
-  Experiment experiment = with_control("off");
-  // removes all springs of a corner mass, which tears off the mass
-  const Body newborn = matured(with_control("no-change")).living.body;
-  Edits edits;
-  for (std::uint32_t s = 0; s < newborn.springs.size(); ++s)
-    if (newborn.springs[s].a == 0 || newborn.springs[s].b == 0) edits.removed_springs.push_back(s);
-  ASSERT_EQ(edits.removed_springs.size(), 7u);
-  experiment.devo[0].op = std::make_unique<Fixed>(edits);
-  experiment.development.cycles = 1;
-  const Life life = matured(experiment);
-  EXPECT_EQ(life.result.status, Status::ok);
-  EXPECT_EQ(life.living.body.masses.size(), newborn.masses.size() - 1);
-  EXPECT_EQ(life.living.state.position.size(), newborn.masses.size() - 1);
-  EXPECT_EQ(life.living.body.springs.size(), newborn.springs.size() - 7);
+TEST(Schedule, EarlyLateOnceAndNowAndThenAndOperatorsKnowTheirTurns) {
+  const struct {
+    std::string schedule;
+    std::vector<int> cycles;
+  } cases[] = {{"", {1, 2, 3, 4, 5, 6, 7, 8}}, {"to = 3", {1, 2, 3}},    {"from = 7\nto = 100", {7, 8}},
+               {"from = 5\nto = 5", {5}},      {"every = 3", {1, 4, 7}}, {"from = 2\nevery = 3\nto = 7", {2, 5}}};
+  for (const auto& [schedule, cycles] : cases) {
+    SCOPED_TRACE(schedule);
+    const Seen seen =
+        watch(testing::read(testing::small_with({{"cycles = 2\ncycle_time = 0.05", "cycles = 8\ncycle_time = 0.001"},
+                                                 {"springs = 2", "springs = 2\n" + schedule}})));
+    EXPECT_EQ(seen.cycles, cycles);
+    const int turns = static_cast<int>(cycles.size());
+    for (int turn = 1; turn <= turns; ++turn) EXPECT_EQ(seen.applications.at(turn - 1), std::pair(turn, turns));
+  }
 }
 
 }  // namespace

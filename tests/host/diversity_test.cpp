@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "report/run_json.hpp"
-#include "support/experiments.hpp"
+#include "support/changed.hpp"
 #include "support/messages.hpp"
 #include "support/scratch.hpp"
 
@@ -17,36 +17,21 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* height = R"(
-[[fitness]]
-name = "descriptor"
-what = "height"
-range = [0.0, 2.0]
-bins = 4
-settle = 0.05
-window = 0.1
-)";
-constexpr const char* contact = R"(
-[[fitness]]
-name = "descriptor"
-what = "contact"
-bins = 3
-settle = 0.05
-window = 0.1
-)";
+/// The table of a descriptor.
+std::string descriptor(const std::string& what, const std::string& keys) {
+  return "[[fitness]]\nname = 'descriptor'\nwhat = '" + what + "'\nsettle = 0.05\nwindow = 0.1\n" + keys;
+}
+const std::string height = descriptor("height", "range = [0.0, 2.0]\nbins = 4\n");
 
 /// Makes archives by hand.
 class Diversity : public ::testing::Test {
  protected:
-  explicit Diversity(const std::string& text = testing::small_experiment + height + contact)
-      : experiment_(testing::read(text)) {}
-
   /// Adds an individual to the next generation. It has failed if it has no scores.
   void add(std::vector<double> objectives, std::vector<double> measures) {
     Individual& one = newborns_.emplace_back();
     one.id = next_++;
     one.born = one.origin = generation_;
-    one.genome = experiment_.layout.first_size() > 0 ? Genome(experiment_.layout.first_size(), 0) : Genome();
+    one.genome = Genome(experiment_.layout.first_size(), 0);
     if (objectives.empty()) one.result = {Status::invalid, "no springs", 0, {}, 0};
     one.result.objectives = std::move(objectives);
     one.result.measures = std::move(measures);
@@ -61,8 +46,13 @@ class Diversity : public ::testing::Test {
     return *archive_;
   }
 
+  /// Changes the file of the run.
+  void alter(const char* sql) {
+    SQLite::Database((scratch_ / "run" / "run.sqlite").string(), SQLite::OPEN_READWRITE).exec(sql);
+  }
+
   testing::Scratch scratch_;
-  Experiment experiment_;
+  Experiment experiment_ = testing::read(testing::small_experiment + height + descriptor("contact", "bins = 3\n"));
 
  private:
   std::optional<Archive> archive_;
@@ -100,54 +90,26 @@ TEST_F(Diversity, TheBestIndividualOfEachCellIsItsElite) {
 TEST_F(Diversity, AMissingDescriptorIsRefused) {
   add({1, 0}, {0.1, 0.2});
   commit({});
-  {
-    SQLite::Database database((scratch_ / "run" / "run.sqlite").string(), SQLite::OPEN_READWRITE);
-    database.exec("DELETE FROM measured WHERE measure = 0");
-  }
+  alter("DELETE FROM measured WHERE measure = 0");
   EXPECT_THAT([&] { niche_map(archive()); },
               ::testing::ThrowsMessage<ArchiveError>(testing::naming("individual 0", "descriptor")));
 }
 
-class OneAxis : public Diversity {
- protected:
-  OneAxis() : Diversity(testing::small_experiment + height) {}
-};
-
-TEST_F(OneAxis, MakesAMapOfOneRow) {
-  add({1, 0}, {1.99});
-  commit({});
-  const NicheMap map = niche_map(archive());
-  EXPECT_EQ(map.cells(), 4u);
-  ASSERT_EQ(map.elites.size(), 1u);
-  EXPECT_THAT(map.elites[0].cell, ElementsAre(3));
-}
-
-class LessIsBetter : public Diversity {
- protected:
-  static std::string text() {
-    const std::string all = testing::small_experiment + height;
-    const std::size_t begin = all.find("[[fitness]]"), end = all.find("[[fitness]]", begin + 1);
-    return all.substr(0, begin) + all.substr(end);  // without the distance
-  }
-  LessIsBetter() : Diversity(text()) {}
-};
-
-TEST_F(LessIsBetter, HasElitesWithTheLeastScoresAndNoQdScore) {
+TEST_F(Diversity, AMapOfOneRowHasElitesWithTheLeastScoresAndNoQdScore) {
+  const std::string distance = "[[fitness]]\nname = \"distance\"\nsettle = 0.05\nwindow = 0.1\n";
+  experiment_ = testing::read(testing::small_with({{distance, ""}}) + height);
   add({3}, {0.1});
   add({2}, {0.2});
   add({1}, {0.9});
   commit({});
   const NicheMap map = niche_map(archive());
+  EXPECT_EQ(map.cells(), 4u);
   EXPECT_THAT(best_elites(map, 3), ElementsAre(2, 1));
   EXPECT_EQ(state_json(map, map.history[0]).dump(), R"({"filled":2,"coverage":0.5,"qd_score":null})");
 }
 
-class NoAxis : public Diversity {
- protected:
-  NoAxis() : Diversity(testing::small_experiment) {}
-};
-
-TEST_F(NoAxis, HasNoMap) {
+TEST_F(Diversity, OfExperimentsWithoutAnAxisHasNoMap) {
+  experiment_ = testing::small();
   add({1, 0}, {});
   commit({});
   EXPECT_TRUE(map_json(niche_map(archive())).is_null());
@@ -159,7 +121,10 @@ TEST_F(NoAxis, HasNoMap) {
 
 class Noted : public Diversity {
  protected:
-  Noted() : Diversity(testing::small_experiment) { experiment_.notes = {{"species", "1", true}, {"novelty", "m"}}; }
+  Noted() {
+    experiment_ = testing::small();
+    experiment_.notes = {{"species", "1", true}, {"novelty", "m"}};
+  }
 };
 
 TEST_F(Noted, NotesHoldUntilAnotherIsMadeOrTheIndividualDies) {
@@ -192,10 +157,7 @@ TEST_F(Noted, NotesOfGenerationsThatTheRunDoesNotHaveAreRefused) {
   add({1, 0}, {});
   commit({}, {{0, 0, 7}});
   archive().commit({}, {}, {}, {.generation = 1, .evaluations = 1}, {.memory = {}, .notes = {{0, 0, 8}}});
-  {
-    SQLite::Database database((scratch_ / "run" / "run.sqlite").string(), SQLite::OPEN_READWRITE);
-    database.exec("UPDATE notes SET generation = 5 WHERE generation = 1");
-  }
+  alter("UPDATE notes SET generation = 5 WHERE generation = 1");
   EXPECT_THAT([&] { (void)archive().note_histories(); },
               ::testing::ThrowsMessage<ArchiveError>(testing::naming("notes.generation", "5")));
 }

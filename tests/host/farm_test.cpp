@@ -17,20 +17,24 @@
 #include "evolution/evolution.hpp"
 #include "operators/loader.hpp"
 #include "support/experiments.hpp"
+#include "support/lives.hpp"
 #include "support/messages.hpp"
+#include "support/refusals.hpp"
 #include "support/runs.hpp"
 #include "support/scratch.hpp"
 
 namespace evodevo::EVODEVO_FILE {
 namespace {
 
-using std::chrono::milliseconds;
+using testing::at_place;
+using ::testing::ThrowsMessage;
 
 /// Carries messages between ranks that are threads of this process.
 class LocalChannel final : public Channel {
  public:
   /// What is on the way to each rank.
   struct Boxes {
+    explicit Boxes(int ranks) : of(static_cast<std::size_t>(ranks)) {}
     std::mutex mutex;
     std::vector<std::deque<Received>> of;
   };
@@ -66,25 +70,17 @@ class LocalChannel final : public Channel {
 };
 
 /// A simulator that does something else before it simulates, and may have another name.
-class Hindered final : public Simulator {
- public:
-  Hindered(const Experiment& experiment, std::function<void()> hindrance, std::string name = "")
-      : simulator_(make_cpu_simulator(experiment.scene, experiment.stepping, 1)),
-        hindrance_(std::move(hindrance)),
-        name_(name.empty() ? simulator_->device() : std::move(name)) {}
-
+struct Hindered final : testing::AlteredSimulator {
+  Hindered(const Experiment& experiment, std::function<void()> before, bool other)
+      : AlteredSimulator(experiment), hindrance(std::move(before)), is_strange(other) {}
   void run(std::span<Task> tasks, Recording recording) override {
-    hindrance_();
-    simulator_->run(tasks, recording);
+    hindrance();
+    AlteredSimulator::run(tasks, recording);
   }
-  NeighbourSearch& neighbours() override { return simulator_->neighbours(); }
-  Workers& workers() override { return simulator_->workers(); }
-  std::string device() const override { return name_; }
+  std::string device() const override { return is_strange ? "strange" : AlteredSimulator::device(); }
 
- private:
-  std::unique_ptr<Simulator> simulator_;
-  std::function<void()> hindrance_;
-  std::string name_;
+  std::function<void()> hindrance;
+  bool is_strange;
 };
 
 /// The ranks of a run, each of which has an experiment and a simulator of its own, as processes have.
@@ -97,20 +93,17 @@ class LocalRanks {
   };
 
   /// The ranks in `strange` have another device, and stronger gravity: nobody can mistake their results for others.
-  LocalRanks(int count, const std::vector<Override>& overrides, Hindrance hindrance, std::set<int> strange = {}) {
-    auto boxes = std::make_shared<LocalChannel::Boxes>();
-    boxes->of.resize(static_cast<std::size_t>(count));
+  LocalRanks(int count, const std::vector<std::string>& values, Hindrance hindrance, std::set<int> strange = {}) {
+    const auto boxes = std::make_shared<LocalChannel::Boxes>(count);
     for (int rank = 0; rank < count; ++rank) {
-      std::vector<Override> own = overrides;
-      if (strange.contains(rank)) own.push_back({"scene.gravity.acceleration", "11", ""});
-      experiments_.push_back(testing::read(testing::small_experiment, own));
+      const bool is_strange = strange.contains(rank);
+      std::vector<std::string> own = values;
+      if (is_strange) own.push_back("scene.gravity.acceleration=11");
+      experiments_.push_back(testing::small(own));
       channels_.push_back(std::make_unique<LocalChannel>(boxes, rank));
-    }
-    for (int rank = 0; rank < count; ++rank) {
-      const auto at = static_cast<std::size_t>(rank);
       std::function<void()> act = [] {};
-      if (rank == hindrance.rank) act = [hindrance, this, at] { hindrance.act(*channels_[at]); };
-      simulators_.push_back(std::make_unique<Hindered>(experiments_[at], act, strange.contains(rank) ? "strange" : ""));
+      if (rank == hindrance.rank) act = [act = hindrance.act, channel = channels_.back().get()] { act(*channel); };
+      simulators_.push_back(std::make_unique<Hindered>(experiments_.back(), act, is_strange));
     }
     for (std::size_t rank = 1; rank < channels_.size(); ++rank)
       threads_.emplace_back([this, rank] {
@@ -126,7 +119,7 @@ class LocalRanks {
   LocalChannel& channel(std::size_t rank = 0) { return *channels_[rank]; }
 
  private:
-  std::vector<Experiment> experiments_;
+  std::deque<Experiment> experiments_;
   std::vector<std::unique_ptr<LocalChannel>> channels_;
   std::vector<std::unique_ptr<Simulator>> simulators_;
   std::vector<std::jthread> threads_;
@@ -139,23 +132,18 @@ class FarmRuns : public ::testing::Test {
  protected:
   using Hindrance = LocalRanks::Hindrance;
 
-  /// Makes a run in the folder `name` with several ranks.
-  Archive run(const std::string& name, int count, const std::vector<Override>& overrides, Hindrance hindrance = {}) {
-    LocalRanks ranks(count, overrides, hindrance);
+  /// Makes a run in the folder `name` with these ranks.
+  Archive run(const std::string& name, LocalRanks& ranks, const FarmOptions& options, const Observer& observer = {}) {
     Archive archive = Archive::create(scratch_ / name, ranks.experiment(), ranks.simulator().device());
-    Farm farm(ranks.experiment(), ranks.simulator(), ranks.channel(), {}, {.patience = patience});
-    evolve(ranks.experiment(), farm, archive, stop_, Observer{});
+    Farm farm(ranks.experiment(), ranks.simulator(), ranks.channel(), {}, options);
+    evolve(ranks.experiment(), farm, archive, stop_, observer);
     shares_ = farm.shares();
     given_up_ = ranks.channel().given_up();
     return archive;
   }
-  /// Makes the same run in one process.
-  Archive run_alone(const std::vector<Override>& overrides) {
-    const Experiment experiment = testing::read(testing::small_experiment, overrides);
-    const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
-    Archive archive = Archive::create(scratch_ / "alone", experiment, simulator->device());
-    evolve(experiment, *simulator, archive, stop_, Observer{});
-    return archive;
+  Archive run(const std::string& name, int count, const std::vector<std::string>& values, Hindrance hindrance = {}) {
+    LocalRanks ranks(count, values, hindrance);
+    return run(name, ranks, {.patience = patience});
   }
 
   testing::Scratch scratch_;
@@ -164,53 +152,39 @@ class FarmRuns : public ::testing::Test {
   std::vector<int> given_up_;
 };
 
-const std::vector<Override> many{{"experiment.evaluations", "60", ""}, {"experiment.population", "20", ""}};
+const std::vector<std::string> many{"experiment.evaluations=60", "experiment.population=20"};
 
-TEST_F(FarmRuns, GiveTheSameForAnyNumberOfRanks) {
-  const Archive alone = run_alone(many);
+/// Settings with which some individuals come to the front whose fitness does not hold.
+const std::vector<std::string> verified{many[0], many[1], "experiment.verify_front=true",
+                                        "materials.bone.stiffness=3e5", "simulation.unstable=run"};
+
+TEST_F(FarmRuns, GiveTheSameForAnyNumberOfRanksHoweverFastTheyAre) {
+  const testing::FinishedRun alone(testing::small(many));
   for (const int count : {1, 2, 5, 64}) {
-    testing::expect_same_runs(alone, run(std::to_string(count), count, many));
+    testing::expect_same_runs(alone.archive, run(std::to_string(count), count, many));
     std::uint64_t lives = 0;
     for (const Share& share : shares_) lives += share.lives;
     EXPECT_EQ(lives, 60u);
     EXPECT_EQ(shares_.size(), static_cast<std::size_t>(count));
   }
-}
-
-TEST_F(FarmRuns, OfMoreRanksThanRobotsGiveTheSame) {
-  const std::vector<Override> few{{"experiment.evaluations", "8", ""}, {"experiment.population", "3", ""}};
-  testing::expect_same_runs(run_alone(few), run("many", 16, few));
-}
-
-/// Settings with which some individuals come to the front whose fitness does not hold.
-std::vector<Override> verified(std::vector<Override> overrides) {
-  overrides.push_back({"experiment.verify_front", "true", ""});
-  overrides.push_back({"materials.bone.stiffness", "3e5", ""});
-  overrides.push_back({"simulation.unstable", "run", ""});
-  return overrides;
+  const auto wait = [](LocalChannel&) { std::this_thread::sleep_for(std::chrono::milliseconds(100)); };
+  testing::expect_same_runs(alone.archive, run("slow", 3, many, {2, wait}));
+  EXPECT_THAT(given_up_, ::testing::IsEmpty());
 }
 
 TEST_F(FarmRuns, VerifyTheFrontAlike) {
-  const Archive alone = run_alone(verified(many));
+  const testing::FinishedRun alone(testing::small(verified));
   std::int64_t refused = 0;
-  for (const Summary& summary : alone.generations()) refused += summary.artefact + summary.passive;
+  for (const Summary& summary : alone.archive.generations()) refused += summary.artefact + summary.passive;
   EXPECT_GT(refused, 0);
-  testing::expect_same_runs(alone, run("three", 3, verified(many)));
-}
-
-TEST_F(FarmRuns, WithASlowRankGiveTheSame) {
-  testing::expect_same_runs(
-      run_alone(many),
-      run("slow", 3, many, {2, [](LocalChannel&) { std::this_thread::sleep_for(milliseconds(100)); }}));
-  EXPECT_THAT(given_up_, ::testing::IsEmpty());
+  testing::expect_same_runs(alone.archive, run("three", 3, verified));
 }
 
 TEST_F(FarmRuns, GoOnWithoutARankThatFallsSilent) {
   ::testing::internal::CaptureStderr();
   const Archive without = run("silent", 3, many, {1, [](LocalChannel& channel) { channel.is_cut = true; }});
-  EXPECT_THAT(::testing::internal::GetCapturedStderr(),
-              testing::at_place("warning: rank 1 on ", " 6 s ", "other ranks"));
-  testing::expect_same_runs(run_alone(many), without);
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(), at_place("warning: rank 1 on ", " 6 s ", "other ranks"));
+  testing::expect_same_runs(testing::FinishedRun(testing::small(many)).archive, without);
   EXPECT_THAT(given_up_, ::testing::ElementsAre(1));
   EXPECT_TRUE(shares_[1].lost);
   EXPECT_EQ(shares_[1].lives, 0u);
@@ -218,35 +192,28 @@ TEST_F(FarmRuns, GoOnWithoutARankThatFallsSilent) {
 
 TEST_F(FarmRuns, EndWithTheNameOfARankWhoseJobFails) {
   const auto fail = [](LocalChannel&) { throw std::runtime_error("the GPU is lost"); };
-  try {
-    run("failed", 3, many, {2, fail});
-    FAIL() << "the run goes on";
-  } catch (const std::runtime_error& error) {
-    EXPECT_THAT(error.what(), testing::at_place("rank 2 on ", ": the GPU is lost"));
-  }
+  EXPECT_THAT(
+      [&] {
+        run("failed", 3, many, {2, fail});
+      },
+      ThrowsMessage<std::runtime_error>(at_place("rank 2 on ", ": the GPU is lost")));
 }
 
 TEST_F(FarmRuns, ForgiveSilenceInWhichTheLeaderDoesNotListen) {
   LocalRanks ranks(2, many, {});
-  Archive archive = Archive::create(scratch_ / "run", ranks.experiment(), ranks.simulator().device());
-  Farm farm(ranks.experiment(), ranks.simulator(), ranks.channel(), {}, {.patience = std::chrono::seconds(3)});
   int generations = 0;
   const auto pause = [&](const Summary&) {
     std::this_thread::sleep_for(std::chrono::seconds(4));
     stop_ = ++generations == 2;
   };
-  evolve(ranks.experiment(), farm, archive, stop_, {.generation_done = pause});
+  run("run", ranks, {.patience = std::chrono::seconds(3)}, {.generation_done = pause});
   EXPECT_EQ(generations, 2);
-  EXPECT_THAT(ranks.channel().given_up(), ::testing::IsEmpty());
+  EXPECT_THAT(given_up_, ::testing::IsEmpty());
 }
 
 TEST_F(FarmRuns, OfMixedRanksKeepWhatEachOfThemFinds) {
-  LocalRanks ranks(3, verified(many), {}, {1, 2});
-  Archive archive = Archive::create(scratch_ / "run", ranks.experiment(), ranks.simulator().device());
-  {
-    Farm farm(ranks.experiment(), ranks.simulator(), ranks.channel(), {}, {.mixed = true, .patience = patience});
-    evolve(ranks.experiment(), farm, archive, stop_, Observer{});
-  }
+  LocalRanks ranks(3, verified, {}, {1, 2});
+  const Archive archive = run("run", ranks, {.mixed = true, .patience = patience});
   ASSERT_EQ(archive.provenances().size(), 2u);
   EXPECT_EQ(archive.provenances()[1].device, "strange");
   int recorded = 0, refused = 0;
@@ -261,44 +228,20 @@ TEST_F(FarmRuns, OfMixedRanksKeepWhatEachOfThemFinds) {
       EXPECT_EQ(*life, again.records({&newborn, 1}, std::vector{0u}).front()) << id;
       ++recorded;
     }
-    if (one.result.status == Status::ok) {
+    if (one.result.status == Status::artefact || one.result.status == Status::passive) {
+      const Champion champion{newborn, result.objectives.at(0)};
+      const std::optional<Mark> mark = first_mark(again.verify({&champion, 1}, std::vector{0u}).front(), true);
+      EXPECT_THAT(one.result.reason, at_place(mark.value().trial.name)) << id << ", by rank " << rank;
+      ++refused;
+    } else {
       EXPECT_EQ(one.result.objectives, result.objectives) << id << ", by rank " << rank;
-      ++scored[one.provenance];
+      scored[one.provenance] += one.result.status == Status::ok;
     }
-    if (one.result.status != Status::artefact && one.result.status != Status::passive) continue;
-    const Champion champion{newborn, result.objectives.at(0)};
-    const Verification verification = again.verify({&champion, 1}, std::vector{0u}).front();
-    const std::optional<Mark> mark = first_mark(verification, true);
-    ASSERT_TRUE(mark) << id << ", by rank " << rank << ": " << one.result.reason;
-    EXPECT_THAT(one.result.reason, testing::at_place(mark->trial.name)) << id;
-    ++refused;
   }
-  EXPECT_GT(scored[0], 0);
-  EXPECT_GT(scored[1], 0);
-  EXPECT_GT(recorded, 0);
-  EXPECT_GT(refused, 0);
+  EXPECT_GT(std::min({scored[0], scored[1], recorded, refused}), 0);
 }
 
-TEST_F(FarmRuns, OfMixedRanksEndWhenNoneIsLeftThatCanRepeatALife) {
-  LocalRanks ranks(2, many, {}, {1});
-  Farm farm(ranks.experiment(), ranks.simulator(), ranks.channel(), {}, {.mixed = true, .patience = patience});
-  const Individual individual = breed(ranks.experiment(), {}, 0, 0, 1).front();
-  const Newborn newborn{individual.id, individual.born, &individual.genome};
-  const Champion champion{newborn, 1};
-  ranks.channel(1).is_cut = true;
-  const auto expect_end = [](auto ask) {
-    try {
-      ask();
-      FAIL() << "another rank has done it";
-    } catch (const std::runtime_error& error) {
-      EXPECT_THAT(error.what(), testing::naming("strange", "resume"));
-    }
-  };
-  expect_end([&] { farm.records({&newborn, 1}, std::vector{1u}); });
-  expect_end([&] { farm.verify({&champion, 1}, std::vector{1u}); });
-}
-
-TEST_F(FarmRuns, OfMixedRanksAskThoseThatCanRepeatALife) {
+TEST_F(FarmRuns, OfMixedRanksAskThoseThatCanRepeatALifeAndEndWhenNoneIsLeft) {
   LocalRanks ranks(3, many, {}, {1});
   Farm farm(ranks.experiment(), ranks.simulator(), ranks.channel(), {}, {.mixed = true, .patience = patience});
   const std::vector<Individual> individuals = breed(ranks.experiment(), {}, 0, 0, 6);
@@ -319,93 +262,82 @@ TEST_F(FarmRuns, OfMixedRanksAskThoseThatCanRepeatALife) {
     differ += value(0) != value(1);
   }
   EXPECT_GT(differ, 3u) << "nobody could tell who has verified them";
+  ranks.channel(1).is_cut = true;
+  const Newborn& newborn = champions.front().newborn;
+  const auto ends = ThrowsMessage<std::runtime_error>(testing::naming("strange", "resume"));
+  EXPECT_THAT([&] { farm.records({&newborn, 1}, std::vector{1u}); }, ends);
+  EXPECT_THAT([&] { farm.verify({&champions.front(), 1}, std::vector{1u}); }, ends);
 }
 
-TEST_F(FarmRuns, EndWithTheNameOfARankThatDoesNotFit) {
-  const Experiment experiment = testing::read(testing::small_experiment);
-  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
-  const auto boxes = std::make_shared<LocalChannel::Boxes>();
-  boxes->of.resize(2);
-  LocalChannel leader(boxes, 0), other(boxes, 1);
-  bool mixed = false;
-  const auto refusal = [&](const std::string& bytes) {
-    other.send(0, bytes);
-    try {
-      const Farm farm(experiment, *simulator, leader, {}, {.mixed = mixed, .patience = patience});
-    } catch (const std::runtime_error& error) {
-      return std::string(error.what());
-    }
-    return std::string("no message");
+/// Two ranks that send what a test says, and what they need to work. The leader's number in the run is `first`.
+struct TwoRanks {
+  explicit TwoRanks(int first = 0) : boxes(std::make_shared<LocalChannel::Boxes>(first + 2)), leader(boxes, first) {}
+
+  std::shared_ptr<LocalChannel::Boxes> boxes;
+  LocalChannel leader, other{boxes, leader.rank() + 1};
+  Experiment experiment = testing::small();
+  std::unique_ptr<Simulator> simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
+  Worker worker{experiment, *simulator};
+};
+
+TEST(Farm, EndsWithTheNameOfARankThatDoesNotFit) {
+  TwoRanks two;
+  const auto refusal = [&](const std::string& bytes, bool mixed) {
+    two.other.send(0, bytes);
+    return testing::refusal<std::runtime_error>([&] {
+      const Farm farm(two.experiment, *two.simulator, two.leader, {}, {.mixed = mixed, .patience = patience});
+    });
   };
-  EXPECT_THAT(refusal(message::packed(message::Failure{"node7", "no operator \"x\"", true})),
-              testing::at_place("rank 1 on node7", "no operator \"x\"", ""));
-  message::Hello hello = Worker(experiment, *simulator).hello();
-  hello.host = "node8";
-  const auto altered = [&](auto change) {
-    message::Hello changed = hello;
-    change(changed);
-    return refusal(message::packed(changed));
+  EXPECT_THAT(refusal(message::packed(message::Failure{"node7", "no operator \"x\"", true}), false),
+              at_place("rank 1 on node7", "no operator \"x\"", ""));
+  const auto altered = [&](void (*change)(message::Hello&), bool mixed) {
+    message::Hello hello = two.worker.hello();
+    hello.host = "node8";
+    change(hello);
+    return refusal(message::packed(hello), mixed);
   };
-  const auto other_program = [](message::Hello& h) { h.provenance.program = "abc"; };
-  const auto other_device = [](message::Hello& h) { h.provenance.device = "cuda, X"; };
-  const auto other_library = [](message::Hello& h) { h.provenance.operators.back().hash = "def"; };
-  EXPECT_THAT(altered(other_program), testing::at_place("rank 1 on node8", "abc", "the same program", "--mixed"));
-  EXPECT_THAT(altered(other_device), testing::at_place("rank 1 on node8", "cuda, X", "--device", "--mixed"));
-  EXPECT_THAT(altered(other_library), testing::at_place("rank 1 on node8", "def", "the same libraries", "--mixed"));
-  mixed = true;
-  for (const auto& change : {std::function<void(message::Hello&)>(other_program), {other_device}, {other_library}})
-    EXPECT_EQ(altered(change), "no message");
-  EXPECT_THAT(altered([](message::Hello& h) { h.layout.types.front().genes.front().high += 1; }),
+  const struct {
+    void (*change)(message::Hello&);
+    const char *named, *remedy;
+  } builds[] = {{[](message::Hello& h) { h.provenance.program = "abc"; }, "abc", "the same program"},
+                {[](message::Hello& h) { h.provenance.device = "cuda, X"; }, "cuda, X", "--device"},
+                {[](message::Hello& h) { h.provenance.operators.back().hash = "def"; }, "def", "the same libraries"}};
+  for (const auto& [change, named, remedy] : builds) {
+    EXPECT_THAT(altered(change, false), at_place("rank 1 on node8", named, remedy, "--mixed"));
+    EXPECT_EQ(altered(change, true), "no refusal");
+  }
+  EXPECT_THAT(altered([](message::Hello& h) { h.layout.types.front().genes.front().high += 1; }, true),
               testing::naming("rank 1 on node8", "layout", "same version"));
-  EXPECT_THAT(altered([](message::Hello& h) { h.scores.front() += " or so"; }),
+  EXPECT_THAT(altered([](message::Hello& h) { h.scores.front() += " or so"; }, true),
               testing::naming("rank 1 on node8", "score", "same version"));
 }
 
 TEST(Farm, NamesRanksOfAGroupByTheirNumbersInTheRun) {
-  const Experiment experiment = testing::read(testing::small_experiment);
-  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
-  const auto boxes = std::make_shared<LocalChannel::Boxes>();
-  boxes->of.resize(4);
-  LocalChannel leader(boxes, 2), other(boxes, 3);
-  GroupChannel group(leader, {2, 3});
-  message::Hello hello = Worker(experiment, *simulator).hello();
+  TwoRanks two(2);
+  GroupChannel group(two.leader, {2, 3});
+  message::Hello hello = two.worker.hello();
   hello.provenance.program = "abc";
-  other.send(2, message::packed(hello));
-  try {
-    const Farm farm(experiment, *simulator, group, {}, {.patience = patience});
-    FAIL() << "another build joins the run";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::naming("rank 3 on ", "abc", "than rank 2 on "));
-  }
+  two.other.send(2, message::packed(hello));
+  EXPECT_THAT([&] { const Farm farm(two.experiment, *two.simulator, group, {}, {.patience = patience}); },
+              ThrowsMessage<InputError>(testing::naming("rank 3 on ", "abc", "than rank 2 on ")));
 }
 
 TEST(DoJobs, TellsTheLeaderOfAJobThatCannotBeRead) {
-  const Experiment experiment = testing::read(testing::small_experiment);
-  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
-  Worker worker(experiment, *simulator);
-  const auto boxes = std::make_shared<LocalChannel::Boxes>();
-  boxes->of.resize(2);
-  LocalChannel leader(boxes, 0), other(boxes, 1);
+  TwoRanks two;
   std::string job = message::packed(message::Job{});
   job.pop_back();
-  leader.send(1, job);
-  end_run(leader);
-  do_jobs(other, worker, patience);
-  const std::optional<Received> received = leader.receive();
-  ASSERT_TRUE(received);
-  EXPECT_NE(message::unpacked<message::Failure>(received->bytes).reason, "");
+  two.leader.send(1, job);
+  end_run(two.leader);
+  do_jobs(two.other, two.worker, patience);
+  EXPECT_NE(message::unpacked<message::Failure>(two.leader.receive().value().bytes).reason, "");
 }
 
 TEST(Serve, RefusesAnotherProtocol) {
-  const auto boxes = std::make_shared<LocalChannel::Boxes>();
-  boxes->of.resize(2);
-  LocalChannel leader(boxes, 0), other(boxes, 1);
-  leader.send(1, message::packed(message::Setup{.protocol = "2.99"}));
-  end_run(leader);
-  serve(other, first_message(other).value(), [] { return RankOptions(); });
-  const std::optional<Received> received = leader.receive();
-  ASSERT_TRUE(received);
-  EXPECT_THAT(message::unpacked<message::Failure>(received->bytes).reason,
+  TwoRanks two;
+  two.leader.send(1, message::packed(message::Setup{.protocol = "2.99"}));
+  end_run(two.leader);
+  serve(two.other, first_message(two.other).value(), [] { return RankOptions(); });
+  EXPECT_THAT(message::unpacked<message::Failure>(two.leader.receive().value().bytes).reason,
               testing::naming("protocol " + message::protocol(), "protocol 2.99", "same version"));
 }
 
@@ -424,46 +356,31 @@ TEST(Messages, AreThoseOfTheirProtocol) {
   layout.types = {{"cell", {{-1, 1, 2, 3}}, 4, 5, {"fate"}, 6}};
   layout.first_blocks = genome.blocks;
   layout.own = 7;
-  const message::Outcome outcome{.result = {.status = Status::diverged,
-                                            .reason = "why",
-                                            .ended_at = 1,
-                                            .objectives = {2},
-                                            .spring_evaluations = 5,
-                                            .measures = {3},
-                                            .tests = {{17, 18, 19, 4}}},
-                                 .record = "record",
-                                 .verification = {8, 0.25, {{"again", Status::ok, "so", 0.125}}}};
-  const std::string bytes =
-      message::packed(message::Setup{"protocol", "text", "name", {{"path", "content"}}, true}) +
-      message::packed(
-          message::Hello{"host",
-                         {"device", "version", "program", {{"fitness", "way", "1", "file", "hash", nullptr, "label"}}},
-                         layout,
-                         {"more way in m"},
-                         9,
-                         10,
-                         11}) +
-      message::packed(message::Job{12, message::Work::verify, {{13, 14, 0.5, genome}}}) +
-      message::packed(message::Answer{15, {outcome}, 0.75}) + message::packed(message::Beat{0.1, 0.2}) +
-      message::packed(message::End{{16}}) + message::packed(message::Failure{"host", "reason", true}) +
-      message::packed(message::Kind::forget);
+  const message::Outcome outcome{{Status::diverged, "why", 1, {2}, 5, {}, {3}, {{17, 18, 19, 4}}},
+                                 "record",
+                                 {8, 0.25, {{"again", Status::ok, "so", 0.125}}}};
+  const Provenance provenance{
+      "device", "version", "program", {{"fitness", "way", "1", "file", "hash", nullptr, "label"}}};
+  const std::string bytes = message::packed(message::Setup{"protocol", "text", "name", {{"path", "content"}}, true}) +
+                            message::packed(message::Hello{"host", provenance, layout, {"more way in m"}, 9, 10, 11}) +
+                            message::packed(message::Job{12, message::Work::verify, {{13, 14, 0.5, genome}}}) +
+                            message::packed(message::Answer{15, {outcome}, 0.75}) +
+                            message::packed(message::Beat{0.1, 0.2}) + message::packed(message::End{{16}}) +
+                            message::packed(message::Failure{"host", "reason", true}) +
+                            message::packed(message::Kind::forget);
   const testing::Scratch scratch;
   EXPECT_EQ(message::protocol() + ": " + file_hash(scratch.write("messages", bytes)), "2.13: 7d33b421e79d2997")
       << "a message has changed: increase message::protocol() unless the archive's format has grown, and put what this "
          "test says here";
 }
 
-TEST(JobSize, ShrinksTowardsTheEnd) {
-  const message::Hello gpu{.jobs = 16, .lives = 64};
+TEST(JobSize, ShrinksTowardsTheEndAndGivesEachRankSomeOfASmallBatch) {
+  const message::Hello gpu{.jobs = 16, .lives = 64}, cpu{.jobs = 2, .lives = 8};
   EXPECT_EQ(job_size(100'000, 32, 50'000, gpu), 256u);
   EXPECT_EQ(job_size(6'400, 32, 50'000, gpu), 100u);
   EXPECT_EQ(job_size(640, 32, 50'000, gpu), 64u) << "fewer would leave a GPU idle";
   EXPECT_EQ(job_size(3, 32, 50'000, gpu), 3u);
   EXPECT_EQ(job_size(0, 32, 50'000, gpu), 0u);
-}
-
-TEST(JobSize, GivesEachRankSomeOfASmallBatch) {
-  const message::Hello gpu{.jobs = 16, .lives = 64}, cpu{.jobs = 2, .lives = 8};
   EXPECT_EQ(job_size(200, 64, 50, gpu), 12u) << "a fourth of its share for each of four jobs";
   EXPECT_EQ(job_size(80, 64, 20, gpu), 12u) << "fewer would not repay a batch";
   EXPECT_EQ(job_size(31, 64, 8, gpu), 8u);

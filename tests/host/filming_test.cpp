@@ -6,72 +6,52 @@
 #include <algorithm>
 #include <functional>
 #include <map>
-#include <string>
-#include <vector>
 
-#include "evolution/breeding.hpp"
-#include "support/experiments.hpp"
+#include "support/changed.hpp"
+#include "support/lives.hpp"
 
 namespace evodevo::EVODEVO_FILE {
 namespace {
 
-std::vector<Newborn> newborns_of(const std::vector<Individual>& individuals) {
-  std::vector<Newborn> newborns;
-  for (const Individual& individual : individuals)
-    newborns.push_back({individual.id, individual.born, &individual.genome});
-  return newborns;
-}
-
 /// Returns the small experiment with other devo operators, and additional keys of development.
 std::string with_development(const std::string& keys, const std::string& operators) {
-  std::string text = testing::small_experiment;
-  const std::size_t first = text.find("[[development.operator]]");
-  text.replace(first, text.find("[[fitness]]") - first, keys + operators);
-  return text;
+  return testing::small_with(
+      {{"[[development.operator]]\nname = \"spring-turnover\"\nsprings = 2\n", keys + operators}});
 }
 
-void expect_filming_changes_no_result(const std::string& text) {
+std::vector<FilmedLife> filmed_lives(const std::string& text, std::size_t count) {
   const Experiment experiment = testing::read(text);
-  const std::vector<Individual> individuals = breed(experiment, {}, 0, 0, 12);
+  const std::vector<Individual> individuals = breed(experiment, {}, 0, 0, count);
   const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 2);
-  const std::vector<Newborn> newborns = newborns_of(individuals);
-  const std::vector<Result> plain = Evaluation(experiment, *simulator).evaluate(newborns, [](double) {});
-  const std::vector<FilmedLife> filmed = film_lives(experiment, *simulator, newborns);
-  ASSERT_EQ(filmed.size(), plain.size());
-  for (std::size_t i = 0; i < plain.size(); ++i) {
-    EXPECT_EQ(filmed[i].result.status, plain[i].status);
-    EXPECT_EQ(filmed[i].result.spring_evaluations, plain[i].spring_evaluations);
-    EXPECT_EQ(filmed[i].result.objectives, plain[i].objectives);
-    EXPECT_EQ(filmed[i].result.record, plain[i].record);
-  }
-}
-
-TEST(Filming, ChangesNoResult) { expect_filming_changes_no_result(testing::small_experiment); }
-
-TEST(Filming, ChangesNoResultOfOperatorsThatAskForMoreThanStress) {
-  for (const char* by : {"peak", "tension", "compression", "work"}) {
-    SCOPED_TRACE(by);
-    expect_filming_changes_no_result(with_development(
-        "", "[[development.operator]]\nname = 'length-adaptation'\nsprings = 3\nby = '" + std::string(by) + "'\n"));
-  }
+  return film_lives(experiment, *simulator, testing::newborns_of(individuals));
 }
 
 const std::string turnover = "[[development.operator]]\nname = 'spring-turnover'\nsprings = 2\n";
+const std::string tallied = with_development("probe = 'skip-shift'\nskip = 7\n", turnover);
 
-TEST(Filming, ChangesNoResultOfTallies) {
-  expect_filming_changes_no_result(with_development("probe = 'skip-shift'\nskip = 7\n", turnover));
-}
-
-TEST(Filming, ChangesNoResultOfYokedLives) {
-  expect_filming_changes_no_result(with_development("control = 'random-places'\n", turnover));
+TEST(Filming, ChangesNoResult) {
+  for (const std::string& text :
+       {testing::small_experiment, tallied, with_development("control = 'random-places'\n", turnover)}) {
+    SCOPED_TRACE(text);
+    const Experiment experiment = testing::read(text);
+    const std::vector<Individual> individuals = breed(experiment, {}, 0, 0, 12);
+    const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 2);
+    const std::vector<Result> plain =
+        Evaluation(experiment, *simulator).evaluate(testing::newborns_of(individuals), [](double) {});
+    const std::vector<FilmedLife> filmed = filmed_lives(text, 12);
+    ASSERT_EQ(filmed.size(), plain.size());
+    for (std::size_t i = 0; i < plain.size(); ++i) {
+      EXPECT_EQ(filmed[i].result.status, plain[i].status);
+      EXPECT_EQ(filmed[i].result.spring_evaluations, plain[i].spring_evaluations);
+      EXPECT_EQ(filmed[i].result.objectives, plain[i].objectives);
+      EXPECT_EQ(filmed[i].result.record, plain[i].record);
+    }
+  }
 }
 
 TEST(Filming, ReachesFromBirthToTheEndWithoutAGap) {
-  const Experiment experiment = testing::read(testing::small_experiment);
-  const std::vector<Individual> individuals = breed(experiment, {}, 0, 0, 12);
-  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 2);
   std::size_t lives = 0;
-  for (const FilmedLife& life : film_lives(experiment, *simulator, newborns_of(individuals))) {
+  for (const FilmedLife& life : filmed_lives(testing::small_experiment, 12)) {
     if (life.result.status != Status::ok) continue;
     ++lives;
     ASSERT_EQ(life.film.size(), 4u);  // two cycles, settling, the window
@@ -90,18 +70,14 @@ TEST(Filming, ReachesFromBirthToTheEndWithoutAGap) {
 }
 
 TEST(Filming, MassesKeepTheirNumbers) {
-  std::string text = testing::small_experiment;
-  text.insert(text.find("[[fitness]]"), "[[development.operator]]\nname = 'mass-turnover'\nlimit = 2\nsprings = 4\n");
-  const Experiment experiment = testing::read(text);
-  const std::vector<Individual> individuals = breed(experiment, {}, 0, 0, 12);
-  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 2);
+  const std::string text =
+      with_development("", turnover + "[[development.operator]]\nname = 'mass-turnover'\nlimit = 2\nsprings = 4\n");
   std::size_t come = 0, gone = 0;
-  for (const FilmedLife& life : film_lives(experiment, *simulator, newborns_of(individuals))) {
+  for (const FilmedLife& life : filmed_lives(text, 12)) {
     std::map<std::uint32_t, Mass> known;
     for (const Shot& shot : life.film) {
       ASSERT_EQ(shot.numbers.size(), shot.body.masses.size());
-      EXPECT_EQ(std::adjacent_find(shot.numbers.begin(), shot.numbers.end(), std::greater_equal<>()),
-                shot.numbers.end());
+      EXPECT_EQ(std::ranges::adjacent_find(shot.numbers, std::greater_equal()), shot.numbers.end());
       for (std::size_t i = 0; i < shot.numbers.size(); ++i) {
         const auto [found, is_new] = known.try_emplace(shot.numbers[i], shot.body.masses[i]);
         come += is_new && &shot != &life.film.front();
@@ -115,17 +91,12 @@ TEST(Filming, MassesKeepTheirNumbers) {
 }
 
 TEST(Filming, ACycleOfManyRunsIsOneShot) {
-  const auto film = [](const std::string& keys) {
-    const Experiment experiment = testing::read(with_development(keys, turnover));
-    const std::vector<Individual> individuals = breed(experiment, {}, 0, 0, 1);
-    const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
-    return film_lives(experiment, *simulator, newborns_of(individuals)).front().film;
-  };
-  const Film exact = film(""), tallied = film("probe = 'skip-shift'\nskip = 7\n");  // a tally every 3.5 ms
+  const Film exact = filmed_lives(with_development("", turnover), 1).front().film;
+  const Film tallies = filmed_lives(tallied, 1).front().film;  // a tally every 3.5 ms
   ASSERT_EQ(exact.size(), 4u);
-  ASSERT_EQ(tallied.size(), 4u);
+  ASSERT_EQ(tallies.size(), 4u);
   for (std::size_t i = 0; i < 4; ++i) {
-    const std::vector<Frame>& frames = tallied[i].frames;
+    const std::vector<Frame>& frames = tallies[i].frames;
     EXPECT_EQ(frames.front().time, exact[i].frames.front().time);
     EXPECT_NEAR(frames.back().time, exact[i].frames.back().time, 1e-12);
     for (std::size_t f = 1; f < frames.size(); ++f) EXPECT_GT(frames[f].time, frames[f - 1].time);
@@ -133,17 +104,17 @@ TEST(Filming, ACycleOfManyRunsIsOneShot) {
     EXPECT_LE(frames.size(), 2 * exact[i].frames.size());
   }
   // the body at birth is the same, so its stress is the same up to rounding
-  ASSERT_EQ(tallied.front().stress.size(), exact.front().stress.size());
+  ASSERT_EQ(tallies.front().stress.size(), exact.front().stress.size());
   for (std::size_t s = 0; s < exact.front().stress.size(); ++s)
-    EXPECT_NEAR(tallied.front().stress[s], exact.front().stress[s], 1e-4 * exact.front().stress[s] + 1e-6);
+    EXPECT_NEAR(tallies.front().stress[s], exact.front().stress[s], 1e-4 * exact.front().stress[s] + 1e-6);
 }
 
 TEST(Filming, RecordsWhatARunInOneGoRecords) {
-  const Experiment experiment = testing::read(testing::small_experiment);
+  const Experiment experiment = testing::small();
   const std::vector<Individual> individuals = breed(experiment, {}, 0, 0, 1);
   const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
   FilmingSimulator camera(*simulator, filmed_frames_per_second);
-  Life life = Evaluation(experiment, *simulator).birth.of(newborns_of(individuals)).front();
+  Life life = Evaluation(experiment, *simulator).birth.of(testing::newborns_of(individuals)).front();
   ASSERT_TRUE(life.alive());
   const auto answer = [&](Simulator& by, const Recording& recording) {
     State state = life.living.state;
@@ -152,13 +123,14 @@ TEST(Filming, RecordsWhatARunInOneGoRecords) {
     return task;
   };
   const Recording everything{.stress = true, .work = true, .peak_force = true, .muscle_work = true, .tension = true};
-  const Task whole = answer(*simulator, everything), filmed = answer(camera, everything);
-  for (const auto list : SpringRecords::lists) EXPECT_EQ(filmed.*list, whole.*list);
+  const Task whole = answer(*simulator, everything), filmed = answer(camera, everything), nothing = answer(camera, {});
+  for (const auto list : SpringRecords::lists) {
+    EXPECT_EQ(filmed.*list, whole.*list);
+    EXPECT_TRUE((nothing.*list).empty());
+  }
   EXPECT_GT(whole.work, 0);
   EXPECT_EQ(filmed.work, whole.work);
   EXPECT_EQ(filmed.spring_evaluations, whole.spring_evaluations);
-  const Task nothing = answer(camera, {});
-  for (const auto list : SpringRecords::lists) EXPECT_TRUE((nothing.*list).empty());
 }
 
 }  // namespace

@@ -5,14 +5,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cmath>
 #include <map>
 #include <numbers>
 
-#include "evolution/evolution.hpp"
 #include "evolution/selection_table.hpp"
-#include "support/experiments.hpp"
+#include "support/changed.hpp"
+#include "support/lives.hpp"
 #include "support/messages.hpp"
 #include "support/pairs.hpp"
 #include "support/scratch.hpp"
@@ -30,8 +28,8 @@ class Pairs : public ::testing::Test {
     Individual& one = everyone_.emplace_back();
     one.id = static_cast<std::uint32_t>(everyone_.size() - 1);
     one.genome = {static_cast<float>(h), is_passive ? 1.0F : 0.0F};
-    const std::vector<Newborn> newborns{{one.id, 0, &one.genome}};
-    one.result = Evaluation(experiment_, *simulator_).evaluate(newborns, [](double) {}).front();
+    const Newborn newborn{one.id, 0, &one.genome};
+    one.result = Evaluation(experiment_, *simulator_).evaluate({&newborn, 1}, [](double) {}).front();
     return one.result.objectives.at(0);
   }
   /// Adds a pair that swings back and forth an odd number of times until it is measured, at its full elongation.
@@ -49,14 +47,8 @@ class Pairs : public ::testing::Test {
   std::vector<Individual> everyone_;
 };
 
-TEST_F(Pairs, WhoHoldsStaysOk) {
+TEST_F(Pairs, TheNextInLineAreVerifiedWhenTheFirstFallAndWhoHoldsStaysOk) {
   EXPECT_NEAR(add_honest(), strain, 1e-3);
-  EXPECT_TRUE(verification_.refuse(everyone_, 0).empty());
-  EXPECT_EQ(status(0), Status::ok) << reason(0);
-}
-
-TEST_F(Pairs, TheNextInLineAreVerifiedWhenTheFirstFall) {
-  ASSERT_GT(add_honest(), 0.05);
   const double second = add(exaggerated(2.3)), first = add(exaggerated(2.6));
   ASSERT_GT(second, 2.2 * strain);
   ASSERT_GT(first, second);
@@ -73,12 +65,16 @@ TEST_F(Pairs, TheNextInLineAreVerifiedWhenTheFirstFall) {
   EXPECT_EQ(status(0), Status::ok) << reason(0);
 }
 
-TEST_F(Pairs, WhoNeedsNoMusclesIsPassive) {
+TEST_F(Pairs, WhoNeedsNoMusclesIsPassiveUnlessItIsBehindTheFront) {
   add(std::numbers::pi / measured_step, true);
   const std::vector<Refusal> refusals = verification_.refuse(everyone_, 0);
   ASSERT_EQ(refusals.size(), 1u);
   EXPECT_EQ(status(0), Status::passive);
   EXPECT_THAT(reason(0), ::testing::StartsWith("no-muscles "));
+  add_honest();
+  add(2 * std::numbers::pi / 3 / measured_step, true);  // half of the elongation
+  EXPECT_TRUE(verification_.refuse(everyone_, 0).empty());
+  EXPECT_EQ(status(2), Status::ok);
 }
 
 /// A copy is removed before selection, so that nobody would ask for its fitness; but then it must not outlive the
@@ -91,42 +87,23 @@ TEST_F(Pairs, CopiesOfTheRefusedAreRefusedToo) {
   EXPECT_EQ(status(1), Status::artefact);
 }
 
-TEST_F(Pairs, WhoIsBehindTheFrontIsNotVerified) {
-  add_honest();
-  add(2 * std::numbers::pi / 3 / measured_step, true);  // half of the elongation
-  EXPECT_TRUE(verification_.refuse(everyone_, 0).empty());
-  EXPECT_EQ(status(1), Status::ok);
-}
-
-TEST_F(Pairs, WithoutTheKeyNobodyIsVerified) {
+TEST_F(Pairs, NobodyIsVerifiedWhoComesFromAnotherDeviceOrWithoutTheKey) {
   add(exaggerated(2.6));
+  const RecordedProvenances elsewhere({1});
+  EXPECT_TRUE(FrontVerification(experiment_, evaluator_, elsewhere).refuse(everyone_, 1).empty());
   experiment_.verify_front = false;
   EXPECT_TRUE(verification_.refuse(everyone_, 0).empty());
   EXPECT_EQ(status(0), Status::ok);
   EXPECT_EQ(verification_.seconds(), 0);
-}
-
-TEST_F(Pairs, WhoComesFromAnotherDeviceIsNotVerified) {
-  add(exaggerated(2.6));
-  const RecordedProvenances elsewhere({1});
-  FrontVerification there(experiment_, evaluator_, elsewhere);
-  EXPECT_TRUE(there.refuse(everyone_, 1).empty());
+  experiment_.verify_front = true;
   EXPECT_EQ(verification_.refuse(everyone_, 1).size(), 1u) << "older individuals are verified, too";
 }
 
 /// A device on which so many bodies are simulated.
-class BusyDevice final : public Simulator {
- public:
-  explicit BusyDevice(std::size_t bodies) : bodies_(bodies) {}
-  void run(std::span<Task>, Recording) override {}
-  NeighbourSearch& neighbours() override { throw std::logic_error("not used"); }
-  Workers& workers() override { return workers_; }
-  std::optional<DeviceUse> device_use() const override { return DeviceUse{.devices = 2, .bodies = bodies_}; }
-  std::string device() const override { return "device"; }
-
- private:
-  std::size_t bodies_;
-  Workers workers_{1};
+struct BusyDevice final : testing::AlteredSimulator {
+  explicit BusyDevice(std::size_t busy) : AlteredSimulator({}), bodies(busy) {}
+  std::optional<DeviceUse> device_use() const override { return DeviceUse{.devices = 2, .bodies = bodies}; }
+  std::size_t bodies;
 };
 
 TEST(LivesAtOnce, AreThoseThatADeviceStillHasRoomFor) {
@@ -139,43 +116,10 @@ TEST(LivesAtOnce, AreThoseThatADeviceStillHasRoomFor) {
   EXPECT_EQ(lives_at_once(*cpu), 3u);
 }
 
-class VerifiedRun : public ::testing::Test {
- protected:
-  /// Returns the archive of a run that verifies its front.
-  Archive run(const std::string& folder, std::vector<Override> overrides = {}) {
-    overrides.push_back({"experiment.verify_front", "true", ""});
-    overrides.push_back({"experiment.evaluations", "60", ""});
-    experiment_.emplace(testing::read(testing::small_experiment, overrides));
-    simulator_ = make_cpu_simulator(experiment_->scene, experiment_->stepping, 2);
-    Archive archive = Archive::create(scratch_ / folder, *experiment_, simulator_->device());
-    const std::atomic<bool> stop = false;
-    evolve(*experiment_, *simulator_, archive, stop, Observer{});
-    return archive;
-  }
-  std::vector<std::string> marks_of(const Individual& one) {
-    const Champion champion{{one.id, one.born, &one.genome}, one.result.objectives.at(0)};
-    return marks(verify(*experiment_, *simulator_, {&champion, 1}).front(), true);
-  }
-
-  testing::Scratch scratch_;
-  std::optional<Experiment> experiment_;
-  std::unique_ptr<Simulator> simulator_;
-};
-
-TEST_F(VerifiedRun, NobodyOnTheFrontIsMarked) {
-  const Archive archive = run("run");
-  const std::vector<Individual> population = archive.population();
-  const std::vector<std::uint32_t> layer = layers(population, *experiment_, archive.generations().back().generation);
-  for (const std::uint32_t id : archive.best(1))
-    EXPECT_THAT(marks_of(archive.known_individual(id)), ::testing::IsEmpty()) << id;
-  for (std::size_t i = 0; i < population.size(); ++i) {
-    if (layer[i] > 0 || population[i].result.status != Status::ok) continue;
-    EXPECT_THAT(marks_of(population[i]), ::testing::IsEmpty()) << population[i].id;
-  }
-}
-
-TEST_F(VerifiedRun, CountsTheRefusedAndKeepsTheirReasons) {
-  const Archive archive = run("run", {{"materials.bone.stiffness", "3e5", ""}, {"simulation.unstable", "run", ""}});
+TEST(VerifiedRun, HasNobodyOnTheFrontWhoIsMarkedAndCountsTheRefusedAndKeepsTheirReasons) {
+  const testing::FinishedRun run(testing::small({"experiment.verify_front=true", "experiment.evaluations=60",
+                                                 "materials.bone.stiffness=3e5", "simulation.unstable=run"}));
+  const Archive& archive = run.archive;
   std::map<Status, std::int64_t> counted, told;
   for (std::uint32_t id = 0; id < 60; ++id) {
     const ArchivedIndividual one = archive.individual(id).value();
@@ -189,19 +133,27 @@ TEST_F(VerifiedRun, CountsTheRefusedAndKeepsTheirReasons) {
     told[Status::artefact] += summary.artefact;
     told[Status::passive] += summary.passive;
   }
-  EXPECT_GT(counted[Status::artefact], 0);
-  EXPECT_GT(counted[Status::passive], 0);
-  EXPECT_EQ(counted[Status::artefact], told[Status::artefact]);
-  EXPECT_EQ(counted[Status::passive], told[Status::passive]);
+  for (const Status status : {Status::artefact, Status::passive}) {
+    EXPECT_GT(counted[status], 0);
+    EXPECT_EQ(counted[status], told[status]);
+  }
+
+  const std::vector<Individual> population = archive.population();
+  const std::vector<std::uint32_t> layer = layers(population, run.experiment, archive.generations().back().generation);
+  for (std::size_t i = 0; i < population.size(); ++i) {
+    const Individual& one = population[i];
+    if (layer[i] > 0 || one.result.status != Status::ok) continue;
+    const Champion champion{{one.id, one.born, &one.genome}, one.result.objectives.at(0)};
+    EXPECT_THAT(marks(verify(run.experiment, *run.simulator, {&champion, 1}).front(), true), ::testing::IsEmpty())
+        << one.id;
+  }
 }
 
 /// The front is verified only from the fifth generation on, when some who do not hold live already.
-TEST_F(VerifiedRun, NewbornsAndEldersWhoAreRefusedRankBelowAllWithAFitness) {
-  Experiment experiment = testing::read(testing::small_experiment, {{"selection.name", "elitist", ""}});
-  experiment.evaluations = 60;
-  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 2);
-  Archive archive = Archive::create(scratch_ / "run", experiment, simulator->device());
-  std::atomic<bool> stop = false;
+TEST(VerifiedRun, NewbornsAndEldersWhoAreRefusedRankBelowAllWithAFitness) {
+  const testing::Scratch scratch;
+  Experiment experiment = testing::small({"selection.name=elitist", "experiment.evaluations=60"});
+  Archive archive = Archive::create(scratch / "run", experiment, testing::AlteredSimulator(experiment).device());
   std::map<std::uint32_t, Status> before;
   std::map<bool, int> refused, dropped;  // by whether it is an elder
   const auto follow = [&] {
@@ -222,13 +174,10 @@ TEST_F(VerifiedRun, NewbornsAndEldersWhoAreRefusedRankBelowAllWithAFitness) {
     }
     EXPECT_TRUE(refused_kept == 0 || ok_dropped == 0) << summary.generation;
   };
-  const Observer observer{.generation_done = [&](const Summary&) { stop = true; }};
-  for (; !is_finished(experiment, archive.generations()); stop = false) {
-    experiment.verify_front = archive.generations().size() > 3;
-    if (!experiment.verify_front) {
-      EXPECT_TRUE(refused.empty());
-    }
-    evolve(experiment, *simulator, archive, stop, observer);
+  for (std::size_t done = 0; !is_finished(experiment, archive.generations()); ++done) {
+    experiment.verify_front = done > 3;
+    EXPECT_TRUE(experiment.verify_front || refused.empty());
+    testing::evolve_to(done + 1, experiment, archive, 2);
     follow();
   }
   for (const bool is_elder : {false, true}) {
@@ -237,38 +186,19 @@ TEST_F(VerifiedRun, NewbornsAndEldersWhoAreRefusedRankBelowAllWithAFitness) {
   }
 }
 
-TEST(VerifyFront, IsRefusedIfTheFirstObjectiveIsMeasuredWithinTheLife) {
-  const auto check = [](const std::string& verify_front, const std::string& early) {
-    std::string text = testing::small_experiment;
-    text.replace(text.find("[experiment]"), 12, "[experiment]\nverify_front = " + verify_front);
-    const std::string fitness = "[[fitness]]\nname = \"early-way\"\n";
-    text.insert(early == "first" ? text.find("[[fitness]]") : text.find("[selection]"), fitness);
-    read_experiment(text, {"test.toml", {}, {std::filesystem::path(EVODEVO_FAULTY_PLUGINS) / "special"}});
-  };
-  EXPECT_NO_THROW(check("false", "first"));
-  EXPECT_NO_THROW(check("true", "last"));
-  try {
-    check("true", "first");
-    FAIL() << "it must not be accepted";
-  } catch (const ConfigError& error) {
-    EXPECT_THAT(error.what(), testing::at_place("test.toml:", "name = \"early-way\"", "verify_front = true", "remove"));
-  }
-}
-
-TEST(VerifyFront, IsRefusedIfTheFirstObjectiveIsMinimised) {
-  const auto check = [](const std::string& verify_front, const char* before) {
-    std::string text = testing::small_experiment;
-    text.insert(text.find(before), "[[fitness]]\nname = \"reach\"\ntarget = [1.0, 0.0, 0.0]\n");
-    text.replace(text.find("[experiment]"), 12, "[experiment]\nverify_front = " + verify_front);
-    read_experiment(text, {"test.toml", {}, {}});
-  };
-  EXPECT_NO_THROW(check("false", "[[fitness]]"));
-  EXPECT_NO_THROW(check("true", "[selection]"));
-  try {
-    check("true", "[[fitness]]");
-    FAIL() << "it must not be accepted";
-  } catch (const ConfigError& error) {
-    EXPECT_THAT(error.what(), testing::at_place("test.toml:", "name = \"reach\"", "verify_front = true", "remove"));
+TEST(VerifyFront, IsRefusedIfTheFirstObjectiveIsMeasuredWithinTheLifeOrMinimised) {
+  for (const std::string name : {"name = \"early-way\"", "name = \"reach\""}) {
+    const std::string target = name == "name = \"reach\"" ? "target = [1.0, 0.0, 0.0]\n" : "";
+    const auto check = [&](const std::string& verify_front, const std::string& before) {
+      read_experiment(testing::small_with({{before, "[[fitness]]\n" + name + "\n" + target + before},
+                                           {"seed = 7", "seed = 7\nverify_front = " + verify_front}}),
+                      {"test.toml", {}, {std::filesystem::path(EVODEVO_FAULTY_PLUGINS) / "special"}});
+    };
+    EXPECT_NO_THROW(check("false", "[[fitness]]"));
+    EXPECT_NO_THROW(check("true", "[selection]"));
+    const auto is_refused =
+        ::testing::ThrowsMessage<ConfigError>(testing::at_place("test.toml:", name, "verify_front = true", "remove"));
+    EXPECT_THAT([&] { check("true", "[[fitness]]"); }, is_refused);
   }
 }
 

@@ -43,28 +43,20 @@ Layout fixed() {
   return layout;
 }
 
-std::vector<BlockId> ids(const Genome& genome) {
-  std::vector<BlockId> all;
-  for (const Block& block : genome.blocks) all.push_back(block.id);
-  return all;
-}
-
-// blocks -------------------------------------------------------------------------------------------------------------
-
 TEST(Blocks, OfFirstGenomesAreHomologous) {
   Rng rng = stream(1);
   const Genome one = random_genome(network(), rng), other = random_genome(network(), rng);
   EXPECT_NE(one.genes, other.genes);
   EXPECT_EQ(one.blocks, other.blocks);
   EXPECT_EQ(genome_fault(one, network()), "");
-  const std::vector<BlockId> all = ids(one);
-  EXPECT_EQ(std::set<BlockId>(all.begin(), all.end()).size(), 5u);
+  std::set<BlockId> ids;
+  for (const Block& block : one.blocks) ids.insert(block.id);
+  EXPECT_EQ(ids.size(), 5u);
 }
 
 TEST(Blocks, ThatAreAddedComeAtTheEndOfTheirSection) {
   Genome genome = chain();
-  const std::vector<float> genes{0.75f};
-  EXPECT_EQ(add_block(genome, network(), node, genes, 77), 5u);
+  EXPECT_EQ(add_block(genome, network(), node, std::vector{0.75f}, 77), 5u);
   EXPECT_THAT(genome.genes, ElementsAre(0.5f, -0.5f, 1.5f, 0.25f, 0, 1, -0.25f, 1, 2, 0.75f));
   EXPECT_EQ(genome.blocks.back(), (Block{node, 9, 1, 77}));
   EXPECT_EQ(genome_fault(genome, network()), "");
@@ -73,16 +65,15 @@ TEST(Blocks, ThatAreAddedComeAtTheEndOfTheirSection) {
 }
 
 TEST(Blocks, ThatGoTakeAlongWhatRefersToThem) {
-  Genome genome = chain();
-  remove_block(genome, network(), 0);  // the first link goes too, the second refers to nodes 0 and 1 from now on
-  EXPECT_THAT(genome.genes, ElementsAre(-0.5f, 1.5f, -0.25f, 0, 1));
-  EXPECT_EQ(genome_fault(genome, network()), "");
-  Genome middle = chain();
-  remove_block(middle, network(), 1);
-  EXPECT_THAT(middle.genes, ElementsAre(0.5f, 1.5f)) << "no link is left";
-  Genome end = chain();
-  remove_block(end, network(), 3);
-  EXPECT_THAT(end.genes, ElementsAre(0.5f, -0.5f, 1.5f, -0.25f, 1, 2)) << "a link goes alone";
+  const auto without = [](std::uint32_t block) {
+    Genome genome = chain();
+    remove_block(genome, network(), block);
+    EXPECT_EQ(genome_fault(genome, network()), "");
+    return genome.genes;
+  };
+  EXPECT_THAT(without(0), ElementsAre(-0.5f, 1.5f, -0.25f, 0, 1)) << "the second link refers to nodes 0 and 1 now";
+  EXPECT_THAT(without(1), ElementsAre(0.5f, 1.5f)) << "no link is left";
+  EXPECT_THAT(without(3), ElementsAre(0.5f, -0.5f, 1.5f, -0.25f, 1, 2)) << "a link goes alone";
 }
 
 TEST(Blocks, ThatGoTakeAlongWhatRefersToThemInTurn) {
@@ -110,14 +101,11 @@ TEST(Blocks, HaveIdsThatTellDescent) {
 TEST(Blocks, AreMatchedByTheirIds) {
   const Layout layout = network();
   Genome one = chain(), other = chain();
-  const std::vector<float> genes{1};
-  add_block(one, layout, node, genes, 77);
-  add_block(other, layout, node, genes, 88);
-  add_block(other, layout, node, genes, 77);
+  add_block(one, layout, node, std::vector{1.0f}, 77);
+  for (const BlockId id : {88, 77}) add_block(other, layout, node, std::vector{1.0f}, id);
   remove_block(other, layout, 0);
   // other: nodes 1 and 2, their link, nodes 88 and 77
-  EXPECT_THAT(homologous(one, other, layout), ElementsAre(std::nullopt, std::optional(0u), std::optional(1u),
-                                                          std::nullopt, std::optional(2u), std::optional(4u)));
+  EXPECT_THAT(homologous(one, other, layout), ElementsAre(std::nullopt, 0u, 1u, std::nullopt, 2u, 4u));
 }
 
 TEST(Blocks, AreCopiedWithTheMeaningOfTheirReferences) {
@@ -142,8 +130,6 @@ TEST(Blocks, MayBeDrawnAnew) {
   for (int i = 0; i < 50; ++i) drawn.insert(layout.draw(genome, 3, rng));
   EXPECT_THAT(drawn, ElementsAre(0, 1)) << "a reference goes to any node and to nothing else";
 }
-
-// faults -------------------------------------------------------------------------------------------------------------
 
 TEST(GenomeFault, NamesWhatTheLayoutDoesNotAllow) {
   const auto fault_of = [](auto change) {
@@ -183,8 +169,6 @@ TEST(LayoutFault, NamesWhatIsWrong) {
   EXPECT_THAT(fault_of([](Layout& l) { l.types[1].genes.clear(); }), HasSubstr("no genes"));
 }
 
-// sections -----------------------------------------------------------------------------------------------------------
-
 /// Fixed genes, a network, and fixed genes again.
 Layout three_sections() {
   Layout whole{.sections = {}};
@@ -208,8 +192,7 @@ TEST(Sections, AreJoinedAndSplit) {
 
 TEST(Sections, ThatAreFixedStoreNoBlocks) {
   Layout whole{.sections = {}};
-  add_section(whole, "one", fixed());
-  add_section(whole, "other", fixed());
+  for (const char* name : {"one", "other"}) add_section(whole, name, fixed());
   const Genome genome = join({Genome{0, 0, 0}, Genome{1, 1, 1}}, whole);
   EXPECT_TRUE(whole.is_fixed());
   EXPECT_TRUE(genome.blocks.empty());
@@ -243,8 +226,7 @@ TEST(Sections, ReachAnOperatorWithoutTheOthers) {
 
 TEST(Sections, HaveReferencesOfTheirOwn) {
   Layout whole{.sections = {}};
-  add_section(whole, "one", network());
-  add_section(whole, "other", network());
+  for (const char* name : {"one", "other"}) add_section(whole, name, network());
   Genome genome = join({chain(), chain()}, whole);
   EXPECT_EQ(genome_fault(genome, whole), "") << "equal ids in two sections are no fault";
   EXPECT_EQ(target_of(genome, whole, genome.blocks[9], 2), 7u) << "node 2 of the second section";

@@ -12,6 +12,7 @@
 #include "experiment/islands/island_tables.hpp"
 #include "experiment/islands/neighbours.hpp"
 #include "support/messages.hpp"
+#include "support/refusals.hpp"
 
 namespace evodevo::EVODEVO_FILE {
 namespace {
@@ -26,47 +27,30 @@ std::vector<Numbers> all_destinations(const IslandSettings& islands) {
   return all;
 }
 
-TEST(Neighbours, OfARingAreTheNextOnes) {
+TEST(Neighbours, OfARingAreTheNextOnesAndOfAStarOrAFullGraphAllOthers) {
   EXPECT_THAT(all_destinations({.count = 5, .topology = Topology::ring}),
               ElementsAre(Numbers{2}, Numbers{3}, Numbers{4}, Numbers{5}, Numbers{1}));
   EXPECT_THAT(all_destinations({.count = 2, .topology = Topology::ring}), ElementsAre(Numbers{2}, Numbers{1}));
+  EXPECT_THAT(all_destinations({.count = 4, .topology = Topology::star}),
+              ElementsAre(Numbers{2, 3, 4}, Numbers{1}, Numbers{1}, Numbers{1}));
+  EXPECT_THAT(all_destinations({.count = 3, .topology = Topology::full}),
+              ElementsAre(Numbers{2, 3}, Numbers{1, 3}, Numbers{1, 2}));
 }
 
-/// 1 2 3 4
-/// 5 6 7 8
-/// 9 10 11 12
-TEST(Neighbours, OfATorusAreTheFourOnAGrid) {
+/// 1 2 3 4      1 2 3    1 2 3
+/// 5 6 7 8      4 5 6    4 5 6
+/// 9 10 11 12            7 8 9
+TEST(Neighbours, OfATorusAreTheUpToFourOnAGrid) {
   EXPECT_THAT(all_destinations({.count = 12, .topology = Topology::torus}),
               ElementsAre(Numbers{2, 4, 5, 9}, Numbers{1, 3, 6, 10}, Numbers{2, 4, 7, 11}, Numbers{1, 3, 8, 12},
                           Numbers{1, 6, 8, 9}, Numbers{2, 5, 7, 10}, Numbers{3, 6, 8, 11}, Numbers{4, 5, 7, 12},
                           Numbers{1, 5, 10, 12}, Numbers{2, 6, 9, 11}, Numbers{3, 7, 10, 12}, Numbers{4, 8, 9, 11}));
-}
-
-/// 1 2 3
-/// 4 5 6
-TEST(Neighbours, OfATorusOfTwoRowsAreThree) {
   EXPECT_THAT(all_destinations({.count = 6, .topology = Topology::torus}),
               ElementsAre(Numbers{2, 3, 4}, Numbers{1, 3, 5}, Numbers{1, 2, 6}, Numbers{1, 5, 6}, Numbers{2, 4, 6},
                           Numbers{3, 4, 5}));
-}
-
-/// 1 2 3
-/// 4 5 6
-/// 7 8 9
-TEST(Neighbours, OfATorusMayBeOnASquare) {
   const IslandSettings square{.count = 9, .topology = Topology::torus};
   EXPECT_THAT(destinations_of(5, square), ElementsAre(2, 4, 6, 8));
   EXPECT_THAT(destinations_of(9, square), ElementsAre(3, 6, 7, 8));
-}
-
-TEST(Neighbours, OfAStarAreTheFirstAndAllOthers) {
-  EXPECT_THAT(all_destinations({.count = 4, .topology = Topology::star}),
-              ElementsAre(Numbers{2, 3, 4}, Numbers{1}, Numbers{1}, Numbers{1}));
-}
-
-TEST(Neighbours, OfAFullGraphAreAllOthers) {
-  EXPECT_THAT(all_destinations({.count = 3, .topology = Topology::full}),
-              ElementsAre(Numbers{2, 3}, Numbers{1, 3}, Numbers{1, 2}));
 }
 
 TEST(Neighbours, ReceiveFromThoseWhoSendToThem) {
@@ -83,77 +67,6 @@ TEST(Neighbours, ReceiveFromThoseWhoSendToThem) {
   }
 }
 
-class IslandTables : public ::testing::Test {
- protected:
-  std::vector<Experiment> read(std::vector<Override> overrides = {}) const {
-    return testing::read_islands(scratch_, testing::small_islands, std::move(overrides));
-  }
-  std::string complaint(std::vector<Override> overrides) const {
-    try {
-      read(std::move(overrides));
-    } catch (const ConfigError& error) {
-      return error.what();
-    }
-    return "no complaint";
-  }
-
-  testing::Scratch scratch_;
-};
-
-TEST_F(IslandTables, GiveEachIslandWhatIsItsOwn) {
-  const std::vector<Experiment> islands = read();
-  ASSERT_EQ(islands.size(), 3u);
-  std::set<std::int64_t> seeds{7};
-  for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(islands[i].island, static_cast<std::int64_t>(i) + 1);
-    EXPECT_TRUE(seeds.insert(islands[i].seed).second) << "of another island, or of the run";
-    EXPECT_EQ(islands[i].layout, islands[0].layout);
-    EXPECT_EQ(islands[i].call_of(Selection::kind, 0).title->whole.find("elitist") != std::string::npos, i == 1);
-  }
-  EXPECT_EQ(islands[0].seed, island_seed(7, 1));
-  EXPECT_EQ(islands[2].seed, 41);
-  EXPECT_EQ(islands[0].mutations.front().probability, 0.8);
-  EXPECT_EQ(islands[2].mutations.front().probability, 0.35);
-  for (const Experiment& island : islands) EXPECT_EQ(island.crossovers.size(), 1u);
-  EXPECT_THAT((Numbers{islands[0].evaluations, islands[1].evaluations, islands[2].evaluations}),
-              ElementsAre(35, 35, 34));
-}
-
-TEST_F(IslandTables, AreReadBackFromTheRecord) {
-  for (const Experiment& island : read()) {
-    const Experiment again = testing::read(island.resolved);
-    EXPECT_EQ(again.resolved, island.resolved);
-    EXPECT_EQ(again.islands, island.islands);
-  }
-}
-
-TEST_F(IslandTables, DivideTheSpringEvaluations) {
-  for (const Experiment& island : read({{"experiment.spring_evaluations", "3e9", ""}}))
-    EXPECT_EQ(island.spring_evaluations, 1e9);
-}
-
-TEST_F(IslandTables, ThatCannotWorkAreRefused) {
-  const std::string file = (scratch_ / "islands.toml").string() + ":";
-  EXPECT_THAT(complaint({{"islands.topology", "torus", "--set"}}), testing::naming("islands.topology", "3 islands"));
-  EXPECT_THAT(complaint({{"islands.migrants", "5", "--set"}}), testing::naming("islands.migrants", "5", "at most 4"));
-  EXPECT_THAT(complaint({{"islands.migrants", "3", "--set"}, {"islands.topology", "full", ""}}),
-              testing::naming("islands.migrants", "6 immigrants", "at most 4"));
-  EXPECT_THAT(complaint({{"islands.count", "1", "--set"}}), testing::naming("islands.count", "1"));
-  EXPECT_THAT(complaint({{"experiment.evaluations", "2", ""}}), testing::naming(file, "2 evaluations", "3 islands"));
-  EXPECT_THAT(complaint({{"island.0.number", "4", "--set"}}), testing::naming("island.0.number", "4", "3"));
-  EXPECT_THAT(complaint({{"island.0.number", "3", "--set"}}), testing::naming("island.1.number", "3"));
-  EXPECT_THAT(complaint({{"island.1.seed", "0.5", "--set"}}), testing::naming("island.1.seed", "0.5", "whole number"));
-  EXPECT_THAT(complaint({{"island.1.mutation.0.name", "gaussian", ""}}), testing::naming(file, "island 3", "gaussian"));
-  EXPECT_THAT(complaint({{"island.1.population", "7", ""}}), testing::naming("population"));
-  EXPECT_THAT(complaint({{"island.0.selection.name", "elitis", ""}}), testing::naming("elitis", "elitist"));
-}
-
-TEST_F(IslandTables, WithoutIslandsAreRefused) {
-  const std::string text = testing::small_experiment + "[[island]]\nnumber = 1\n";
-  EXPECT_THROW(testing::read_islands(scratch_, text), ConfigError);
-  EXPECT_EQ(testing::read_islands(scratch_, testing::small_experiment).front().island, 0);
-}
-
 class Islands : public ::testing::Test {
  protected:
   std::vector<Experiment> read(std::vector<Override> overrides = {}) const {
@@ -167,11 +80,56 @@ class Islands : public ::testing::Test {
   testing::Scratch scratch_;
 };
 
-TEST_F(Islands, DoNotDependOnThreads) {
+using IslandTables = Islands;
+
+TEST_F(IslandTables, GiveEachIslandWhatIsItsOwn) {
   const std::vector<Experiment> islands = read();
-  straight(islands);
-  testing::evolve_islands(islands, scratch_ / "threads", 3);
-  testing::expect_same_islands(scratch_ / "straight", scratch_ / "threads");
+  ASSERT_EQ(islands.size(), 3u);
+  std::set<std::int64_t> seeds{7};
+  for (const Experiment& island : islands) {
+    EXPECT_EQ(island.island, &island - islands.data() + 1);
+    EXPECT_TRUE(seeds.insert(island.seed).second) << "of another island, or of the run";
+    EXPECT_EQ(island.layout, islands[0].layout);
+    EXPECT_EQ(island.call_of(Selection::kind, 0).title->whole.find("elitist") != std::string::npos, island.island == 2);
+    EXPECT_EQ(island.crossovers.size(), 1u);
+  }
+  EXPECT_EQ(islands[0].seed, island_seed(7, 1));
+  EXPECT_EQ(islands[2].seed, 41);
+  EXPECT_EQ(islands[0].mutations.front().probability, 0.8);
+  EXPECT_EQ(islands[2].mutations.front().probability, 0.35);
+  EXPECT_THAT((Numbers{islands[0].evaluations, islands[1].evaluations, islands[2].evaluations}),
+              ElementsAre(35, 35, 34));
+}
+
+TEST_F(IslandTables, AreReadBackFromTheRecordAndDivideTheSpringEvaluations) {
+  for (const Experiment& island : read({{"experiment.spring_evaluations", "3e9", ""}})) {
+    const Experiment again = testing::read(island.resolved);
+    EXPECT_EQ(again.resolved, island.resolved);
+    EXPECT_EQ(again.islands, island.islands);
+    EXPECT_EQ(island.spring_evaluations, 1e9);
+  }
+}
+
+TEST_F(IslandTables, ThatCannotWorkAreRefused) {
+  const std::string file = (scratch_ / "islands.toml").string() + ":";
+  const auto complaint = [&](const std::vector<Override>& overrides) {
+    return testing::refusal<ConfigError>([&] { read(overrides); });
+  };
+  EXPECT_THAT(complaint({{"islands.topology", "torus", "--set"}}), testing::naming("islands.topology", "3 islands"));
+  EXPECT_THAT(complaint({{"islands.migrants", "5", "--set"}}), testing::naming("islands.migrants", "5", "at most 4"));
+  EXPECT_THAT(complaint({{"islands.migrants", "3", "--set"}, {"islands.topology", "full", ""}}),
+              testing::naming("islands.migrants", "6 immigrants", "at most 4"));
+  EXPECT_THAT(complaint({{"islands.count", "1", "--set"}}), testing::naming("islands.count", "1"));
+  EXPECT_THAT(complaint({{"experiment.evaluations", "2", ""}}), testing::naming(file, "2 evaluations", "3 islands"));
+  EXPECT_THAT(complaint({{"island.0.number", "4", "--set"}}), testing::naming("island.0.number", "4", "3"));
+  EXPECT_THAT(complaint({{"island.0.number", "3", "--set"}}), testing::naming("island.1.number", "3"));
+  EXPECT_THAT(complaint({{"island.1.seed", "0.5", "--set"}}), testing::naming("island.1.seed", "0.5", "whole number"));
+  EXPECT_THAT(complaint({{"island.1.mutation.0.name", "gaussian", ""}}), testing::naming(file, "island 3", "gaussian"));
+  EXPECT_THAT(complaint({{"island.1.population", "7", ""}}), testing::naming("population"));
+  EXPECT_THAT(complaint({{"island.0.selection.name", "elitis", ""}}), testing::naming("elitis", "elitist"));
+  const std::string none = testing::small_experiment + "[[island]]\nnumber = 1\n";
+  EXPECT_THROW(testing::read_islands(scratch_, none), ConfigError) << "without islands";
+  EXPECT_EQ(testing::read_islands(scratch_, testing::small_experiment).front().island, 0);
 }
 
 TEST_F(Islands, GoOnFromEveryInterruption) {
@@ -189,6 +147,7 @@ TEST_F(Islands, GoOnFromEveryInterruption) {
 TEST_F(Islands, GoOnWhereverEachOfThemStands) {
   const std::vector<Experiment> islands = read();
   straight(islands);
+  EXPECT_THAT(archive(1).emigrants_to(2, 0), ::testing::SizeIs(3)) << "after generations 1, 3 and 5";
   testing::evolve_islands(islands, scratch_ / "early", 1, testing::Interruption{1, 1});
   const fs::path mixed = scratch_ / "mixed";
   fs::create_directory(mixed);
@@ -246,14 +205,6 @@ TEST_F(Islands, ReceiveThoseWhoseGenesTheyDoNotHave) {
   EXPECT_GE(arrived, 3u);
 }
 
-TEST_F(Islands, ThatDoNotReceiveBestEvolveAlone) {
-  const std::vector<Experiment> islands = read({{"islands.every", "1000", ""}});
-  straight(islands);
-  for (std::int64_t island = 1; island <= 3; ++island)
-    for (std::uint32_t id = 0; archive(island).individual(id); ++id)
-      EXPECT_FALSE(archive(island).individual(id)->migrated);
-}
-
 /// Individuals whose first objective is their id.
 std::vector<Individual> ranked_by_id(std::initializer_list<std::uint32_t> ids) {
   std::vector<Individual> individuals;
@@ -265,61 +216,37 @@ std::vector<Individual> ranked_by_id(std::initializer_list<std::uint32_t> ids) {
   return individuals;
 }
 
-std::vector<std::uint32_t> ids_of(const std::vector<Individual>& individuals) {
-  std::vector<std::uint32_t> ids;
-  for (const Individual& one : individuals) ids.push_back(one.id);
-  return ids;
-}
-
-class Replacement : public Islands {
- protected:
-  /// Lets immigrant 17, born in generation 4, claim a place among survivors 2, 5, 9, 11 and 14.
-  void replace(const std::string& rule) {
+/// Lets immigrant 17, born in generation 4, claim a place among survivors 2, 5, 9, 11 and 14, of which 2 is the best.
+TEST_F(Islands, LetAnImmigrantReplaceNobodyOrTheWorstOrARandomOne) {
+  for (const std::string rule : {"nobody", "worst", "random"}) {
     const Experiment island = std::move(read({{"islands.replaced", rule, ""}}).front());
     LocalExchange exchange;
     const Migration migration(island, exchange);
-    std::vector<Individual> everyone = ranked_by_id({17});
+    std::vector<Individual> everyone = ranked_by_id({17}), survivors = ranked_by_id({2, 5, 9, 11, 14});
     everyone.front().born = 4;
     everyone.front().migrated = Migrated{2, 3};
-    survivors_ = ranked_by_id({2, 5, 9, 11, 14});
-    survivors_[0].result.objectives = {100, 0};
-    dropped_ = {17, 1};
-    migration.replace(migration.claimants(everyone, 4), 4, survivors_, dropped_);
+    survivors[0].result.objectives = {100, 0};
+    std::vector<std::uint32_t> dropped = {17, 1}, ids;
+    migration.replace(migration.claimants(everyone, 4), 4, survivors, dropped);
+    for (const Individual& one : survivors) ids.push_back(one.id);
+    if (rule == "nobody") {
+      EXPECT_THAT(ids, ElementsAre(2, 5, 9, 11, 14));
+      EXPECT_THAT(dropped, ElementsAre(17, 1));
+    } else if (rule == "worst") {
+      EXPECT_THAT(ids, ElementsAre(2, 9, 11, 14, 17));
+      EXPECT_THAT(dropped, ::testing::UnorderedElementsAre(1, 5));
+    } else {
+      EXPECT_THAT(ids, ::testing::AllOf(::testing::Contains(17), ::testing::SizeIs(5)));
+      EXPECT_THAT(dropped, ::testing::AllOf(::testing::Not(::testing::Contains(17)), ::testing::SizeIs(2)));
+    }
   }
-
-  std::vector<Individual> survivors_;
-  std::vector<std::uint32_t> dropped_;
-};
-
-TEST_F(Replacement, OfNobodyLetsSelectionDecide) {
-  replace("nobody");
-  EXPECT_THAT(ids_of(survivors_), ElementsAre(2, 5, 9, 11, 14));
-  EXPECT_THAT(dropped_, ElementsAre(17, 1));
-}
-
-TEST_F(Replacement, OfTheWorstTakesThePlaceOfTheLeastFit) {
-  replace("worst");
-  EXPECT_THAT(ids_of(survivors_), ElementsAre(2, 9, 11, 14, 17));
-  EXPECT_THAT(dropped_, ::testing::UnorderedElementsAre(1, 5));
-}
-
-TEST_F(Replacement, OfARandomOneTakesAnyPlace) {
-  replace("random");
-  EXPECT_THAT(ids_of(survivors_), ::testing::Contains(17));
-  EXPECT_THAT(ids_of(survivors_), ::testing::SizeIs(5));
-  EXPECT_THAT(dropped_, ::testing::SizeIs(2));
-  EXPECT_THAT(dropped_, ::testing::Not(::testing::Contains(17)));
 }
 
 TEST_F(Islands, AreRefusedWhereOneArchiveIsExpected) {
   straight(read());
   const fs::path folder = scratch_ / "straight";
-  try {
-    Archive::read(folder);
-    ADD_FAILURE() << "it was read";
-  } catch (const ArchiveError& error) {
-    EXPECT_THAT(error.what(), testing::naming(folder.string(), (folder / "island-1").string()));
-  }
+  EXPECT_THAT([&] { Archive::read(folder); },
+              ::testing::ThrowsMessage<ArchiveError>(testing::naming(folder.string(), (folder / "island-1").string())));
   fs::remove_all(folder / "island-2");
   EXPECT_THROW(island_folders(folder), ArchiveError);
 }

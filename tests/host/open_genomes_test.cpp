@@ -1,4 +1,5 @@
-// Runs whose genomes gain and lose blocks and have several sections, and parameters of every type.
+// Runs whose genomes gain and lose blocks and have several sections, which blocks come and go from parents to
+// children, and parameters of every type.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -6,50 +7,41 @@
 #include <set>
 
 #include "base/genome_sections.hpp"
+#include "evodevo/neat.hpp"
 #include "evolution/archive/archive.hpp"
-#include "evolution/breeding.hpp"
-#include "evolution/evolution.hpp"
 #include "experiment/toml_writer.hpp"
 #include "report/genes_json.hpp"
+#include "report/lineage.hpp"
+#include "support/changed.hpp"
 #include "support/experiments.hpp"
+#include "support/lives.hpp"
 #include "support/messages.hpp"
+#include "support/refusals.hpp"
+#include "support/runs.hpp"
 #include "support/scratch.hpp"
 
 namespace evodevo::EVODEVO_FILE {
 namespace {
 
-std::string replaced(std::string text, const std::string& old, const std::string& by) {
-  return text.replace(text.find(old), old.size(), by);
-}
-
-/// The small experiment with a network that evolves, and a step size that evolves with it.
-std::string networks() {
-  std::string text = replaced(testing::small_experiment, "name = \"voxel\"\nsize = [2, 1, 1]\nedge = 0.5\n",
-                              "name = \"neat\"\npoints = 20\nneighbours = 6\n");
-  text = replaced(text, "name = \"reset-weight\"\nprobability = 0.8\n",
-                  "name = \"gaussian\"\nprobability = 0.8\n[[mutation]]\nname = \"add-node\"\nprobability = 0.5\n"
-                  "[[mutation]]\nname = \"add-link\"\nprobability = 0.5\n[[mutation]]\nname = \"remove-block\"\n"
-                  "probability = 0.3\n");
-  return replaced(text, "two-point", "uniform");
+/// The small experiment with a network that evolves, and a step size that evolves with it, and other changes.
+std::string networks(const std::vector<std::pair<std::string, std::string>>& changes = {}) {
+  const auto mutation = [](const std::string& name, const std::string& probability) {
+    return "[[mutation]]\nname = \"" + name + "\"\nprobability = " + probability + "\n";
+  };
+  std::vector<std::pair<std::string, std::string>> all{
+      {"name = \"voxel\"\nsize = [2, 1, 1]\nedge = 0.5\n", "name = \"neat\"\npoints = 20\nneighbours = 6\n"},
+      {mutation("reset-weight", "0.8"), mutation("gaussian", "0.8") + mutation("add-node", "0.5") +
+                                            mutation("add-link", "0.5") + mutation("remove-block", "0.3")},
+      {"two-point", "uniform"}};
+  all.insert(all.end(), changes.begin(), changes.end());
+  return testing::small_with(all);
 }
 
 std::string complaint(const std::string& text) {
-  try {
-    testing::read(text);
-    return "accepted";
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
+  return testing::refusal<ConfigError>([&] { testing::read(text); });
 }
 
-void evolve_until(const Experiment& experiment, Archive& archive, std::uint32_t generations) {
-  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 2);
-  std::atomic<bool> stop = false;
-  const Observer observer{[&](const Summary& summary) { stop = summary.generation + 1 >= generations; }, [](double) {}};
-  evolve(experiment, *simulator, archive, stop, observer);
-}
-
-TEST(OpenGenomes, HaveASectionForEachOwner) {
+TEST(OpenGenomes, HaveASectionForEachOwnerAndAreToldByName) {
   const Experiment experiment = testing::read(networks());
   EXPECT_THAT(experiment.layout.sections, ::testing::ElementsAre("neat", "gaussian"));
   EXPECT_FALSE(experiment.layout.is_fixed());
@@ -60,35 +52,6 @@ TEST(OpenGenomes, HaveASectionForEachOwner) {
     EXPECT_EQ(genome_fault(individual.genome, experiment.layout), "");
     EXPECT_FLOAT_EQ(individual.genome.genes.back(), std::log(0.1f)) << "the step size";
   }
-}
-
-TEST(OpenGenomes, AreStoredAndResumedToTheBit) {
-  const testing::Scratch scratch;
-  const Experiment experiment = testing::read(networks(), {{"experiment.evaluations", "48", ""}});
-  Archive whole = Archive::create(scratch / "whole", experiment, "test");
-  evolve_until(experiment, whole, 100);
-  {
-    Archive begun = Archive::create(scratch / "pieces", experiment, "test");
-    evolve_until(experiment, begun, 3);
-  }
-  Archive resumed = Archive::resume(scratch / "pieces");
-  const Experiment recorded = recorded_experiment(resumed);
-  EXPECT_EQ(recorded.layout, experiment.layout);
-  EXPECT_EQ(resumed.layout(), experiment.layout);
-  evolve_until(recorded, resumed, 100);
-  std::set<std::size_t> sizes;
-  for (std::uint32_t id = 0; id < 48; ++id) {
-    ASSERT_TRUE(whole.individual(id) && resumed.individual(id)) << id;
-    EXPECT_EQ(resumed.individual(id)->genome, whole.individual(id)->genome) << id;
-    EXPECT_EQ(resumed.individual(id)->result.objectives, whole.individual(id)->result.objectives) << id;
-    EXPECT_EQ(genome_fault(whole.individual(id)->genome, experiment.layout), "") << id;
-    sizes.insert(whole.individual(id)->genome.blocks.size());
-  }
-  EXPECT_GT(sizes.size(), 5u) << "blocks come and go";
-}
-
-TEST(OpenGenomes, AreToldByName) {
-  const Experiment experiment = testing::read(networks());
   const Individual individual = breed(experiment, {}, 0, 0, 1).front();
   const nlohmann::ordered_json sections = genes_json(individual.genome, experiment.layout);
   ASSERT_EQ(sections.size(), 2u);
@@ -101,6 +64,30 @@ TEST(OpenGenomes, AreToldByName) {
   EXPECT_EQ(link["genes"]["from"], sections[0]["blocks"][0]["id"]);
   EXPECT_EQ(link["genes"]["to"], sections[0]["blocks"][4]["id"]);
   EXPECT_EQ(sections[1]["blocks"][0]["genes"]["ln(sigma)"], individual.genome.genes.back());
+}
+
+TEST(OpenGenomes, AreStoredAndResumedToTheBit) {
+  const testing::Scratch scratch;
+  const Experiment experiment = testing::read(networks(), {{"experiment.evaluations", "48", ""}});
+  Archive whole = Archive::create(scratch / "whole", experiment, "test");
+  testing::evolve_to(100, experiment, whole, 2);
+  {
+    Archive begun = Archive::create(scratch / "pieces", experiment, "test");
+    testing::evolve_to(3, experiment, begun, 2);
+  }
+  Archive resumed = Archive::resume(scratch / "pieces");
+  const Experiment recorded = recorded_experiment(resumed);
+  EXPECT_EQ(recorded.layout, experiment.layout);
+  EXPECT_EQ(resumed.layout(), experiment.layout);
+  testing::evolve_to(100, recorded, resumed, 2);
+  testing::expect_same_runs(whole, resumed);
+  std::set<std::size_t> sizes;
+  for (std::uint32_t id = 0; id < 48; ++id) {
+    ASSERT_TRUE(whole.individual(id)) << id;
+    EXPECT_EQ(genome_fault(whole.individual(id)->genome, experiment.layout), "") << id;
+    sizes.insert(whole.individual(id)->genome.blocks.size());
+  }
+  EXPECT_GT(sizes.size(), 5u) << "blocks come and go";
 }
 
 TEST(OpenGenomes, OfBlocksWithoutNamesAreNumbered) {
@@ -120,31 +107,26 @@ TEST(OpenGenomes, OfBlocksWithoutNamesAreNumbered) {
   EXPECT_EQ(name(2, 3), "weight 2");
 }
 
-TEST(Sections, AreChosenByName) {
+TEST(Sections, AreChosenByNameAndMustFitTheVariation) {
   const std::string mutation = "name = \"add-node\"\n";
-  EXPECT_EQ(complaint(replaced(networks(), mutation, mutation + "sections = [\"neat\"]\n")), "accepted");
-  EXPECT_THAT(complaint(replaced(networks(), mutation, mutation + "sections = [\"neuron\"]\n")),
+  EXPECT_THAT(complaint(networks({{mutation, mutation + "sections = [\"neuron\"]\n"}})),
               testing::naming("mutation.1.sections", "neuron", "neat"));
-  const Experiment experiment = testing::read(replaced(networks(), mutation, mutation + "sections = [\"neat\"]\n"));
+  const Experiment experiment = testing::read(networks({{mutation, mutation + "sections = [\"neat\"]\n"}}));
   EXPECT_NE(experiment.resolved.find("sections = [ 'neat' ]"), std::string::npos) << experiment.resolved;
-}
-
-TEST(Traits, OfVariationMustFitTheGenomes) {
-  EXPECT_THAT(complaint(replaced(testing::small_experiment, "\"reset-weight\"", "\"add-node\"")),
+  EXPECT_THAT(complaint(testing::small_with({{"\"reset-weight\"", "\"add-node\""}})),
               testing::naming("mutation.0.name", "add-node", "\"node\"", "block_types", "voxel"));
 }
 
 TEST(Traits, FirstNetworksOfNeatMustFitItsLimits) {
-  std::string text = networks();
-  for (int i = 0; i < 6; ++i) text += "[materials.m" + std::to_string(i) + "]\nstiffness = 1000\n";  // 11 in all
-  const auto limited = [&](const std::string& keys) {
-    return complaint(replaced(text, "name = \"neat\"\n", "name = \"neat\"\n" + keys + "\n"));
+  const auto limited = [](int more_materials, const std::string& keys) {
+    std::string text = networks({{"name = \"neat\"\n", "name = \"neat\"\n" + keys + "\n"}});
+    for (int i = 0; i < more_materials; ++i) text += "[materials.m" + std::to_string(i) + "]\nstiffness = 1000\n";
+    return complaint(text);
   };
-  EXPECT_EQ(limited("nodes = 18\nlinks = 64"), "accepted");
-  EXPECT_THAT(limited("nodes = 17"),
+  EXPECT_EQ(limited(6, "nodes = 18\nlinks = 64"), "no refusal");  // 11 in all
+  EXPECT_THAT(limited(6, "nodes = 17"),
               testing::naming("encoding", "`nodes` = 17", "at least 18", "4 inputs", "14 outputs"));
-  text += "[materials.m6]\nstiffness = 1000\n[materials.m7]\nstiffness = 1000\n[materials.m8]\nstiffness = 1000\n";
-  EXPECT_THAT(limited("links = 67"),
+  EXPECT_THAT(limited(9, "links = 67"),
               testing::naming("encoding", "`links` = 67", "at least 68", "4 inputs", "17 outputs"));
 }
 
@@ -176,45 +158,32 @@ class NewParameters : public ::testing::Test {
     return holder;
   }
   std::string complaint_of(const std::string& text) {
-    try {
-      read(text);
-      return "accepted";
-    } catch (const ConfigError& error) {
-      return error.what();
-    }
+    return testing::refusal<ConfigError>([&] { read(text); });
   }
 
   testing::Scratch scratch_;
   FileContents files_;
 };
 
-TEST_F(NewParameters, KeepTheirDefaults) {
-  const Holder holder = read("");
-  EXPECT_FALSE(holder.rate.has_value());
-  EXPECT_THAT(holder.levels, ::testing::ElementsAre(1, 2));
-  EXPECT_EQ(holder.motto, "none");
-  EXPECT_TRUE(holder.cloud.path.empty());
+TEST_F(NewParameters, KeepTheirDefaultsOrAreReadAndWrittenBack) {
+  const Holder unset = read("");
+  EXPECT_FALSE(unset.rate.has_value());
+  EXPECT_THAT(unset.levels, ::testing::ElementsAre(1, 2));
+  EXPECT_EQ(unset.motto, "none");
+  EXPECT_TRUE(unset.cloud.path.empty());
   EXPECT_TRUE(files_.empty());
-}
-
-TEST_F(NewParameters, AreReadAndWrittenBack) {
   std::ofstream(scratch_ / "points.txt") << std::string("1 2 3\n\0", 7);
   Holder holder = read("rate = 2.5\nlevels = [-3, 0.5]\nmotto = \"so\"\ncloud = \"points.txt\"");
-  EXPECT_EQ(holder.rate, 2.5);
-  EXPECT_THAT(holder.levels, ::testing::ElementsAre(-3, 0.5));
-  EXPECT_EQ(holder.motto, "so");
-  EXPECT_EQ(holder.cloud.content, std::string("1 2 3\n\0", 7));
-  EXPECT_EQ(files_.at("points.txt"), holder.cloud.content);
   TomlWriter writer;
   holder.declare(writer);
   std::ostringstream text;
   text << writer.take();
   std::filesystem::remove(scratch_ / "points.txt");
   const Holder again = read(text.str(), &files_);
-  EXPECT_EQ(again.rate, holder.rate);
-  EXPECT_EQ(again.levels, holder.levels);
-  EXPECT_EQ(again.motto, holder.motto);
-  EXPECT_EQ(again.cloud.content, holder.cloud.content) << "from the record, though the file is gone";
+  EXPECT_EQ(again.rate, 2.5);
+  EXPECT_THAT(again.levels, ::testing::ElementsAre(-3, 0.5));
+  EXPECT_EQ(again.motto, "so");
+  EXPECT_EQ(again.cloud.content, std::string("1 2 3\n\0", 7)) << "from the record, though the file is gone";
 }
 
 TEST_F(NewParameters, RefuseWhatDoesNotFit) {
@@ -226,6 +195,64 @@ TEST_F(NewParameters, RefuseWhatDoesNotFit) {
   EXPECT_THAT(complaint_of("cloud = \".\""), testing::naming("t.cloud", "folder"));
   const FileContents none;
   EXPECT_THROW(read("cloud = \"/etc/hostname\"", &none), ConfigError) << "a record reads no file of this machine";
+}
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+struct Network {
+  Layout layout;
+  neat::Types types = neat::add_types(layout, 1, 2, 9, 9);
+  Genome parent;
+
+  Network() {
+    for (const BlockId id : {7, 8}) add(parent, types.node, {0, 0}, id);
+    add(parent, types.link, {0.5F, 1, 0, 1}, 9);
+  }
+  void add(Genome& genome, std::uint32_t type, const std::vector<float>& genes, BlockId id) const {
+    add_block(genome, layout, type, genes, id);
+  }
+};
+
+TEST(Lineage, TellsWhichBlocksCameAndWent) {
+  const Network network;
+  Genome child = network.parent;
+  network.add(child, network.types.node, {1, 1}, 20);
+  network.add(child, network.types.link, {0.25F, 1, 1, 3}, 21);
+  remove_block(child, network.layout, 0);  // and the first link with it
+  const auto changes = block_changes(network.parent, child, network.layout);
+  ASSERT_EQ(changes.size(), 2u);
+  EXPECT_THAT(changes[0].came, ElementsAre(20));
+  EXPECT_THAT(changes[0].went, ElementsAre(7));
+  EXPECT_THAT(changes[1].came, ElementsAre(21));
+  EXPECT_THAT(changes[1].went, ElementsAre(9));
+  EXPECT_EQ(changes_text(changes, network.layout), ": +1 -1 node, +1 -1 link");
+  child = network.parent;
+  child[0] = 0.75F;
+  EXPECT_THAT(block_changes(network.parent, child, network.layout), IsEmpty()) << "a gene is no block";
+  EXPECT_EQ(changes_text({}, network.layout), "");
+  Layout fixed;
+  fixed.add_block(3, {-1, 1});
+  EXPECT_THAT(block_changes({1, 0, 0}, {0, 0, 0}, fixed), IsEmpty()) << "where nothing comes or goes";
+}
+
+TEST(Lineage, IsToldFromTheYoungestToTheOldest) {
+  const Network network;
+  ArchivedIndividual child, parent, grandparent;
+  child.id = 5;
+  parent.id = 3;
+  grandparent.id = 1;
+  child.genome = parent.genome = grandparent.genome = network.parent;
+  network.add(child.genome, network.types.node, {1, 1}, 20);
+  network.add(grandparent.genome, network.types.node, {1, 1}, 30);
+  const auto changes = line_changes_json({child, parent, grandparent}, network.layout);
+  ASSERT_EQ(changes.size(), 2u);
+  EXPECT_EQ(changes[0].at("individual"), 5);
+  EXPECT_EQ(changes[0].at("type"), "node");
+  EXPECT_THAT(changes[0].at("came"), ElementsAre(id_text(20)));
+  EXPECT_EQ(changes[1].at("individual"), 3);
+  EXPECT_THAT(changes[1].at("went"), ElementsAre(id_text(30)));
+  EXPECT_THAT(changes[1].at("came"), IsEmpty());
 }
 
 }  // namespace

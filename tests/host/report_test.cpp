@@ -1,33 +1,42 @@
-// The data in pages of the viewer, whose numbers can be unpacked.
+// The data in pages of the viewer, whose numbers can be unpacked; the numbers of a run with several objectives: the
+// progress in each, the best of each, and the scores of the living; and the permutation test of scenes.
 #include "report/report.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <zlib.h>
 
-#include <atomic>
+#include <cmath>
+#include <limits>
+#include <map>
 #include <numbers>
 #include <numeric>
 #include <random>
-#include <set>
 
 #include "analysis/ground.hpp"
-#include "evolution/evolution.hpp"
+#include "environments/scene_effect.hpp"
+#include "report/diversity.hpp"
 #include "report/film_json.hpp"
 #include "report/filming.hpp"
 #include "report/packing.hpp"
 #include "report/page.hpp"
+#include "report/run_json.hpp"
 #include "report/scene_json.hpp"
 #include "support/experiments.hpp"
+#include "support/lives.hpp"
+#include "support/messages.hpp"
 #include "support/scratch.hpp"
 
 namespace evodevo::EVODEVO_FILE {
 namespace {
 
-using ::testing::ElementsAre;
+using ::testing::ElementsAre, ::testing::Pair;
+using Json = nlohmann::ordered_json;
+using Numbers = std::vector<std::int64_t>;
+using Indices = std::vector<std::uint32_t>;
 
 /// Unpacks a text in the same way as a page.
-std::vector<std::int64_t> unpacked(const std::string& text) {
+Numbers unpacked(const std::string& text) {
   const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::vector<unsigned char> deflated, plain(1 << 22);
   std::uint32_t bits = 0, count = 0;
@@ -38,7 +47,7 @@ std::vector<std::int64_t> unpacked(const std::string& text) {
   }
   uLongf size = plain.size();
   EXPECT_EQ(uncompress(plain.data(), &size, deflated.data(), static_cast<uLong>(deflated.size())), Z_OK);
-  std::vector<std::int64_t> numbers;
+  Numbers numbers;
   std::uint64_t number = 0, shift = 0;
   for (uLongf i = 0; i < size; ++i) {
     number |= static_cast<std::uint64_t>(plain[i] & 0x7f) << shift;
@@ -51,25 +60,20 @@ std::vector<std::int64_t> unpacked(const std::string& text) {
 }
 
 TEST(Packing, KeepsNumbers) {
-  const std::vector<std::int64_t> numbers = {0, -1, 1, 63, -64, 64, 8191, -8193, 1'000'000'007, -(1LL << 40)};
-  for (std::size_t count = 0; count <= numbers.size(); ++count) {
-    const std::vector<std::int64_t> some(numbers.begin(), numbers.begin() + static_cast<std::ptrdiff_t>(count));
-    EXPECT_EQ(unpacked(packed(some)), some);
+  Numbers numbers;
+  EXPECT_EQ(unpacked(packed(numbers)), numbers);
+  for (const std::int64_t next : {0LL, -1LL, 1LL, 63LL, -64LL, 64LL, 8191LL, -8193LL, 1'000'000'007LL, -(1LL << 40)}) {
+    numbers.push_back(next);
+    EXPECT_EQ(unpacked(packed(numbers)), numbers);
   }
 }
 
-TEST(Packing, TellsWhatCameAndWent) {
-  const std::vector<std::uint32_t> before = {1, 2, 5}, after = {2, 3, 5, 9};
-  EXPECT_THAT(unpacked(packed_changes(before, after)), ElementsAre(1, 2, 6));
-}
-
-TEST(Packing, TellsValuesByHowTheyDifferFromTheirLast) {
+TEST(Packing, TellsWhatCameAndWentAndHowValuesDifferFromTheirLast) {
+  EXPECT_THAT(unpacked(packed_changes(Indices{1, 2, 5}, Indices{2, 3, 5, 9})), ElementsAre(1, 2, 6));
   ValuePacking values(4);
-  EXPECT_THAT(unpacked(values.next(std::vector<std::uint32_t>{0, 3}, std::vector<std::int64_t>{7, 9})),
-              ElementsAre(7, 9));
-  EXPECT_THAT(unpacked(values.next(std::vector<std::uint32_t>{1, 3}, std::vector<std::int64_t>{5, 8})),
-              ElementsAre(5, -1));
-  EXPECT_THAT(unpacked(values.next(std::vector<std::uint32_t>{0}, std::vector<std::int64_t>{7})), ElementsAre(0));
+  EXPECT_THAT(unpacked(values.next(Indices{0, 3}, Numbers{7, 9})), ElementsAre(7, 9));
+  EXPECT_THAT(unpacked(values.next(Indices{1, 3}, Numbers{5, 8})), ElementsAre(5, -1));
+  EXPECT_THAT(unpacked(values.next(Indices{0}, Numbers{7})), ElementsAre(0));
 }
 
 TEST(Packing, TellsPlacesByHowMassesMoved) {
@@ -77,10 +81,10 @@ TEST(Packing, TellsPlacesByHowMassesMoved) {
   const Frame after{2, {{5, 2, 7}, {6, 2, 7}}};
   const std::vector<const Frame*> frames = {&a, &b, &c}, again = {&after};
   PlacePacking positions(3, 0.5);
-  EXPECT_THAT(unpacked(positions.next(frames, std::vector<std::uint32_t>{0, 1})),
+  EXPECT_THAT(unpacked(positions.next(frames, Indices{0, 1})),
               ElementsAre(2, 2, 4, 0, 6, 0, 2, 2, 0, 0, 0, 0, 3, 3, 0, 0, 0, 8));
   // the second mass stays at its position, and a new one is added
-  EXPECT_THAT(unpacked(positions.next(again, std::vector<std::uint32_t>{1, 2})), ElementsAre(0, 2, 0, 0, 0, 0));
+  EXPECT_THAT(unpacked(positions.next(again, Indices{1, 2})), ElementsAre(0, 2, 0, 0, 0, 0));
 }
 
 TEST(Packing, PlacesOutOfReachAreAtItsEnd) {
@@ -91,8 +95,16 @@ TEST(Packing, PlacesOutOfReachAreAtItsEnd) {
   }
 }
 
+/// Returns `count` numbers from 0.
+template <class T>
+std::vector<T> counted(std::size_t count) {
+  std::vector<T> numbers(count);
+  std::iota(numbers.begin(), numbers.end(), T{});
+  return numbers;
+}
+
 /// A shot of a body with masses at the given x positions, with the given numbers, joined in the given pairs.
-Shot shot_of(const std::vector<double>& positions, std::vector<std::uint32_t> numbers,
+Shot shot_of(const std::vector<double>& positions, Indices numbers,
              const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) {
   Shot shot;
   shot.body.materials = {{.stiffness = 1}};
@@ -173,11 +185,8 @@ TEST(FilmJson, KnowsMaterialsAgainThatABodyHasLost) {
 
 /// A shot of `frames` frames with masses in a row that oscillate, each with a frequency of its own.
 Shot swinging(std::size_t masses, std::size_t frames) {
-  std::vector<double> positions(masses);
-  std::vector<std::uint32_t> numbers(masses);
-  std::iota(positions.begin(), positions.end(), 0.0);
-  std::iota(numbers.begin(), numbers.end(), 0u);
-  Shot shot = shot_of(positions, numbers, {{0, 1}});
+  const auto positions = counted<double>(masses);
+  Shot shot = shot_of(positions, counted<std::uint32_t>(masses), {{0, 1}});
   shot.frames.clear();
   for (std::size_t f = 0; f < frames; ++f) {
     Frame& frame = shot.frames.emplace_back(Frame{static_cast<double>(f) / filmed_frames_per_second, {}});
@@ -209,29 +218,11 @@ TEST(FilmJson, KeepsTheEndsOfEachShotWhateverTheyTake) {
 TEST(FilmJson, StatesTheErrorOfWhatItLeavesOut) {
   // a mass jumps by 1 m in the middle of an interval of which every other frame is kept
   Shot shot = shot_of({0, 4}, {0, 1}, {{0, 1}});
-  for (int i = 1; i <= 4; ++i) {
-    shot.frames.push_back(shot.frames.front());
-    shot.frames.back().time = i;
-  }
+  for (int i = 1; i <= 4; ++i) shot.frames.push_back({static_cast<double>(i), shot.frames[0].positions});
   shot.frames[1].positions[0] = {0, 1, 0};
   const auto json = film_json({shot}, {{"jump"}}, 1'000'000);
   EXPECT_EQ(json["shots"][0]["times"], (std::vector<double>{0, 2, 4}));
   EXPECT_NEAR(json["error"]["largest"].get<double>(), 1, 1e-3);
-}
-
-/// Applies spring turnover: replaces `springs` random springs with springs between masses that are not joined yet.
-void turn_over(Body& body, std::size_t springs, std::mt19937& random) {
-  std::set<std::pair<std::uint32_t, std::uint32_t>> joined;
-  for (const Spring& spring : body.springs) joined.insert(std::minmax(spring.a, spring.b));
-  std::uniform_int_distribution<std::uint32_t> mass(0, static_cast<std::uint32_t>(body.masses.size() - 1));
-  std::shuffle(body.springs.begin(), body.springs.end(), random);
-  body.springs.resize(body.springs.size() - std::min(springs, body.springs.size()));
-  while (springs > 0) {
-    const std::uint32_t a = mass(random), b = mass(random);
-    if (a == b || !joined.insert(std::minmax(a, b)).second) continue;
-    body.springs.push_back({a, b, 1, mass(random) % 4});
-    --springs;
-  }
 }
 
 /// A life as long as those of the paper, with a fifth of the masses and springs. All masses pulse once per second, each
@@ -240,22 +231,27 @@ Film long_life(int cycles) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> any(-1, 1);
   Shot shot;
+  shot.numbers = counted<std::uint32_t>(200);
   shot.body.materials.resize(4);
-  for (std::uint32_t i = 0; i < 200; ++i) {
+  for (int i = 0; i < 200; ++i)
     shot.body.masses.push_back({.rest = {any(random), any(random), any(random)}, .mass = 0.2, .material = 0});
-    shot.numbers.push_back(i);
-  }
-  turn_over(shot.body, 2500, random);
+  constexpr std::size_t springs = 2500;
+  std::vector<Spring> all;  // that could be; the first ones are
+  for (std::uint32_t a = 0; a < 200; ++a)
+    for (std::uint32_t b = 0; b < a; ++b) all.push_back({a, b, 1, (a + b) % 4});
+  std::shuffle(all.begin(), all.end(), random);
+  shot.stress.resize(springs);
   Film film;
   double time = 0;
   for (int i = 0; i < cycles + 2; ++i) {
-    turn_over(shot.body, i < cycles ? 25 : 0, random);
-    shot.stress.clear();
-    for (std::size_t s = 0; s < shot.body.springs.size(); ++s) shot.stress.push_back(std::exp(2 * any(random)));
+    for (int turnover = 0; i < cycles && turnover < 25; ++turnover)
+      std::swap(all[random() % springs], all[springs + random() % (all.size() - springs)]);
+    shot.body.springs.assign(all.begin(), all.begin() + springs);
+    for (double& stress : shot.stress) stress = std::exp(2 * any(random));
     shot.frames = film.empty() ? std::vector<Frame>{} : std::vector<Frame>{film.back().frames.back()};
     const double duration = i < cycles ? 1 : i == cycles ? 3 : 10;
-    for (double t = 0; t < duration + 1e-9; t += 1 / filmed_frames_per_second) {
-      if (t == 0 && !film.empty()) continue;
+    for (double t = film.empty() ? 0 : 1 / filmed_frames_per_second; t < duration + 1e-9;
+         t += 1 / filmed_frames_per_second) {
       Frame& frame = shot.frames.emplace_back(Frame{time + t, {}});
       for (const Mass& mass : shot.body.masses) {
         const double pulse = 0.1 * mass.rest.y * std::sin(2 * std::numbers::pi * (frame.time + mass.rest.x));
@@ -271,40 +267,26 @@ Film long_life(int cycles) {
 TEST(FilmJson, ThirteenLivesOfAHundredCyclesFitIntoAPage) {
   constexpr int cycles = 100;
   constexpr std::size_t budget = page_budget / 13 / 5;  // a page has 10 + 3 lives, five times as large
-  const Film film = long_life(cycles);
   std::vector<Title> titles(cycles, {"cycle"});
   titles.insert(titles.end(), {{"settling"}, {"measured", true}});
-  const auto json = film_json(film, titles, budget);
+  const auto json = film_json(long_life(cycles), titles, budget);
   EXPECT_LE(json.dump().size(), budget + 200);  // the error is added after packing
-  std::set<std::int64_t> springs;
-  for (int i = 0; i < cycles; ++i) {
-    const auto& shot = json["shots"][static_cast<std::size_t>(i)];
-    EXPECT_GT(shot["times"].size(), 2u) << "between its ends something is seen";
-    std::int64_t number = 0;
-    for (const std::int64_t difference : unpacked(shot["springs"])) {
-      number += difference;
-      if (springs.erase(number) == 0) springs.insert(number);
-    }
-    ASSERT_EQ(springs.size(), film[static_cast<std::size_t>(i)].body.springs.size());
-  }
+  for (std::size_t i = 0; i < cycles; ++i)
+    EXPECT_GT(json["shots"][i]["times"].size(), 2u) << "between its ends something is seen";
   const double measured = json["shots"].back()["times"].size() / 10.0;  // frames per second
   EXPECT_GE(measured, 3 * static_cast<double>(json["shots"][0]["times"].size() - 1));
   EXPECT_LT(json["stress_levels"], 255) << "or else this life is not long";
 }
 
 TEST(FilmJson, StatesTheErrorOfStress) {
-  std::vector<double> positions(300);
-  std::vector<std::uint32_t> numbers(300);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
-  std::iota(positions.begin(), positions.end(), 0.0);
-  std::iota(numbers.begin(), numbers.end(), 0u);
   for (std::uint32_t i = 0; i + 1 < 300; ++i) pairs.emplace_back(i, i + 1);
-  Shot shot = shot_of(positions, numbers, pairs);
-  for (std::size_t s = 0; s < shot.stress.size(); ++s) shot.stress[s] = static_cast<double>(s);
+  Shot shot = shot_of(counted<double>(300), counted<std::uint32_t>(300), pairs);
+  shot.stress = counted<double>(299);
   for (const std::size_t budget : {1'000'000u, 0u}) {
     const auto json = film_json({shot}, {{"one"}}, budget);
     const double most = json["most_stress"], levels = json["stress_levels"], error = json["error"]["stress"];
-    const std::vector<std::int64_t> shown = unpacked(json["shots"][0]["stress"]);
+    const Numbers shown = unpacked(json["shots"][0]["stress"]);
     double largest = 0;
     for (std::size_t s = 0; s < shown.size(); ++s) {
       const double part = static_cast<double>(shown[s]) / levels;
@@ -315,26 +297,21 @@ TEST(FilmJson, StatesTheErrorOfStress) {
   }
 }
 
-/// A filmed life with a single frame, in which the masses are at these positions.
-FilmedLife life_at(const std::vector<SeenPlace>& positions, Status status = Status::ok) {
+/// The region of a filmed life, in the frames of which the masses are at these positions.
+SeenRegion seen_in(const std::vector<std::vector<SeenPlace>>& frames, Status status = Status::ok) {
   FilmedLife life;
   life.result.status = status;
-  life.film.push_back({{}, {{0, positions}}, {}});
-  return life;
-}
-
-SeenRegion region_of(const std::vector<FilmedLife>& lives) {
+  Shot& shot = life.film.emplace_back();
+  for (const auto& positions : frames) shot.frames.push_back({static_cast<double>(shot.frames.size()), positions});
   SeenRegion region;
-  for (const FilmedLife& life : lives) region.include({life});  // one by one, as reports do
+  region.include({life});
   return region;
 }
 
 TEST(SceneJson, HoldsTheGroundAroundWhatIsSeen) {
   Scene scene;
   scene.floor = Floor{.roughness = 0.1, .wavelength = 0.9, .seed = 7};
-  FilmedLife walker = life_at({{-3, 1, 0}, {-1, 1, 1}});
-  walker.film.front().frames.push_back({1, {{3, 2, 0}, {5, 2, 1}}});
-  const auto json = scene_json(scene, region_of({walker}));
+  const auto json = scene_json(scene, seen_in({{{-3, 1, 0}, {-1, 1, 1}}, {{3, 2, 0}, {5, 2, 1}}}));
   const auto& ground = json["ground"];
   const double x = ground["x"], y = ground["y"], spacing = ground["spacing"];
   const std::size_t columns = ground["columns"], rows = ground["rows"];
@@ -342,7 +319,7 @@ TEST(SceneJson, HoldsTheGroundAroundWhatIsSeen) {
   EXPECT_NEAR(y, 1 - 3 * 2, 1e-6);
   EXPECT_GE(x + spacing * static_cast<double>(columns - 1), 5 + 3 * 2);
   EXPECT_GE(y + spacing * static_cast<double>(rows - 1), 2 + 3 * 2);
-  const std::vector<std::int64_t> differences = unpacked(ground["heights"]);
+  const Numbers differences = unpacked(ground["heights"]);
   ASSERT_EQ(differences.size(), columns * rows);
   std::int64_t level = 0;
   for (std::size_t i = 0; i < differences.size(); ++i) {
@@ -355,11 +332,9 @@ TEST(SceneJson, HoldsTheGroundAroundWhatIsSeen) {
 TEST(SceneJson, GroundStaysSmallWhereverBodiesGo) {
   Scene scene;
   scene.floor = Floor{.roughness = 0.1, .wavelength = 0.001};
-  const FilmedLife born = life_at({{0, 0, 0}, {1, 0, 0}});
-  FilmedLife lost = life_at({{0, 0, 0}, {1, 0, 0}}, Status::diverged);
-  lost.film.front().frames.push_back({1, {{1e30F, 0, 0}, {0, 1e30F, 0}}});
-  const auto ground = scene_json(scene, region_of({lost}))["ground"];
-  EXPECT_EQ(ground, scene_json(scene, region_of({born}))["ground"]);
+  const std::vector<SeenPlace> born{{0, 0, 0}, {1, 0, 0}}, lost{{1e30F, 0, 0}, {0, 1e30F, 0}};
+  const auto ground = scene_json(scene, seen_in({born, lost}, Status::diverged))["ground"];
+  EXPECT_EQ(ground, scene_json(scene, seen_in({born}))["ground"]);
   EXPECT_EQ(ground["columns"], 256);
   EXPECT_LE(ground["rows"], 256);
 }
@@ -376,8 +351,7 @@ TEST(SceneJson, SaysWhatIsThere) {
 TEST(Page, SaysWhereItIsTooLarge) {
   EXPECT_EQ(size_note("r.html", 30'000'000, "--best"), "");
   EXPECT_NE(size_note("r.html", 30'000'001, "--best"), "");
-  EXPECT_THAT(size_note("r.html", 41'000'000, "--best"),
-              ::testing::AllOf(::testing::HasSubstr("r.html: has 41 MB"), ::testing::HasSubstr("--best\n")));
+  EXPECT_THAT(size_note("r.html", 41'000'000, "--best"), testing::naming("r.html: has 41 MB", "--best\n"));
 }
 
 TEST(Page, HoldsDataThatNothingReadsAsMarkup) {
@@ -390,8 +364,7 @@ TEST(Page, HoldsDataThatNothingReadsAsMarkup) {
 TEST(Gallery, KnowsTheMaterialsOfPointsBeforeTheyAreABody) {
   const Experiment experiment = testing::read(
       testing::small_experiment, {{"encoding", "{name = 'neural', points = 21, neighbours = 4}", "--set"}});
-  const auto page = gallery_data(experiment, 3);
-  const auto& run = page["runs"][0];
+  const auto run = gallery_data(experiment, 3)["runs"][0];
   ASSERT_EQ(run["robots"].size(), 3u);
   for (const auto& robot : run["robots"]) {
     ASSERT_EQ(robot["status"], "ok") << robot["reason"];
@@ -407,15 +380,11 @@ TEST(Gallery, KnowsTheMaterialsOfPointsBeforeTheyAreABody) {
 }
 
 TEST(Report, FilmsFollowWhatARunHasRecorded) {
-  const testing::Scratch scratch;
-  const Experiment experiment = testing::read(testing::small_experiment);
-  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
-  Archive archive = Archive::create(scratch / "run", experiment, simulator->device());
-  const std::atomic<bool> stop = false;
-  evolve(experiment, *simulator, archive, stop, Observer{});
+  testing::FinishedRun finished(testing::small());
+  Archive& archive = finished.archive;
   const auto films = [&] {
     std::vector<std::string> texts;
-    const auto run = reported_run(archive, recorded_experiment(archive), *simulator, {}, page_budget);
+    const auto run = reported_run(archive, recorded_experiment(archive), *finished.simulator, {}, page_budget);
     for (const auto& robot : run["robots"])
       if (archive.life(robot["individual"].get<std::uint32_t>())) texts.push_back(robot["film"].dump());
     return texts;
@@ -429,32 +398,181 @@ TEST(Report, FilmsFollowWhatARunHasRecorded) {
 
 /// The filmed speed of the best robot is that which its distances along x and y make.
 TEST(Report, SaysHowNearTheBestCameToTheTopSpeed) {
-  const auto reported = [](const std::string& text) {
-    const testing::Scratch scratch;
-    const Experiment experiment = testing::read(text);
-    const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 2);
-    Archive archive = Archive::create(scratch / "run", experiment, simulator->device());
-    const std::atomic<bool> stop = false;
-    evolve(experiment, *simulator, archive, stop, Observer{});
-    return reported_run(archive, experiment, *simulator, {}, page_budget);
+  const auto reported = [](const std::function<void(Scene&)>& change) {
+    Experiment experiment =
+        testing::small({"fitness.1={name='distance', label='sideways', direction=[0, 1, 0], settle=0.05, window=0.1}"});
+    change(experiment.scene);
+    const testing::FinishedRun run(std::move(experiment));
+    return reported_run(run.archive, run.experiment, *run.simulator, {}, page_budget);
   };
-  std::string text = testing::small_experiment;
-  text.replace(text.find("\"actuation-work\""), 16, "\"distance\"\nlabel = \"sideways\"\ndirection = [0, 1, 0]");
-  const auto run = reported(text);
+  const auto run = reported([](Scene&) {});
   const auto& found = run["top_speed"];
   const auto& best = run["robots"][0]["objectives"];
   const double lengths = std::hypot(best["distance"].get<double>(), best["sideways"].get<double>());
   EXPECT_GT(lengths, 1e-4);
   EXPECT_NEAR(found["speed"].get<double>(), lengths * found["length"].get<double>() / 0.1, 1e-5);
   EXPECT_DOUBLE_EQ(found["limit"].get<double>(), 0.5 * 9.81 / Damping().rate);
-  const auto without = [&](const std::string& table) {
-    std::string changed = text;
-    changed.erase(changed.find(table), table.size());
-    return reported(changed)["top_speed"];
+  const auto undamped = reported([](Scene& scene) { scene.damping.reset(); });
+  EXPECT_TRUE(undamped["top_speed"]["limit"].is_null());
+  EXPECT_GT(undamped["top_speed"]["speed"], 0);
+  EXPECT_TRUE(reported([](Scene& scene) { scene.friction.reset(); })["top_speed"].is_null());
+}
+
+/// A finished run with the objectives distance and actuation-work, of which the second is minimised, a descriptor, and
+/// two scenarios.
+class RunJson : public ::testing::Test {
+ protected:
+  static inline const std::string scenarios =
+      "[[scenario]]\nname = 'flat'\n[[scenario]]\nname = 'hurt'\ndamage = 0.1\nrepeat = 2\n";
+  static inline const std::string stature =
+      "{name='descriptor', what='height', label='stature', range=[0.0, 1.0], bins=1000, settle=0.05, window=0.1}";
+
+  void SetUp() override {
+    while (!is_finished(experiment_, archive_.generations())) {
+      testing::evolve_to(archive_.generations().size() + 1, experiment_, archive_);
+      population_.push_back(archive_.population());
+    }
+  }
+
+  /// The scores in an objective of the individuals alive after a generation.
+  std::vector<double> living(std::size_t generation, std::size_t objective) const {
+    std::vector<double> scores;
+    for (const Individual& individual : population_.at(generation))
+      if (individual.result.status == Status::ok) scores.push_back(individual.result.objectives.at(objective));
+    std::sort(scores.begin(), scores.end());
+    return scores;
+  }
+
+  testing::Scratch scratch_;
+  Experiment experiment_ = testing::read(testing::small_experiment + scenarios, {{"fitness.2", stature, ""}});
+  std::unique_ptr<Simulator> simulator_ = make_cpu_simulator(experiment_.scene, experiment_.stepping, 1);
+  Archive archive_ = Archive::create(scratch_ / "run", experiment_, simulator_->device());
+  std::vector<std::vector<Individual>> population_;  ///< after each generation
+};
+
+/// The individuals that a report shows, and their roles.
+std::vector<std::pair<std::uint32_t, std::string>> robots_of(const Json& run) {
+  std::vector<std::pair<std::uint32_t, std::string>> robots;
+  for (const Json& robot : run["robots"]) robots.emplace_back(robot["individual"], robot["role"]);
+  return robots;
+}
+
+double median(const std::vector<double>& sorted) {
+  return (sorted[(sorted.size() - 1) / 2] + sorted[sorted.size() / 2]) / 2;
+}
+
+TEST_F(RunJson, HasTheProgressOfTheLivingAndTheBestInEachObjectiveAndNamesTheOtherScores) {
+  const Json run = run_json(archive_, experiment_), &generations = run["generations"], &objectives = run["objectives"];
+  ASSERT_EQ(generations.size(), population_.size());
+  ASSERT_GT(generations.size(), 2u);
+  for (std::size_t g = 0; g < generations.size(); ++g) {
+    const auto &distance = generations[g]["objectives"]["distance"],
+               &work = generations[g]["objectives"]["actuation-work"];
+    EXPECT_EQ(distance["best"], generations[g]["best"]);
+    EXPECT_EQ(distance["best"], living(g, 0).back());
+    EXPECT_EQ(distance["median"], median(living(g, 0)));
+    EXPECT_EQ(work["best"], living(g, 1).front()) << "the least";
+    EXPECT_EQ(work["median"], median(living(g, 1)));
+  }
+  std::map<std::uint32_t, std::uint32_t> ids;  // of the best so far of the generations in which it changed
+  double most = -std::numeric_limits<double>::infinity(), least = -most;
+  for (std::uint32_t id = 0; id < 24; ++id) {
+    const auto one = archive_.known_individual(id);
+    if (one.result.status != Status::ok) continue;
+    least = std::min(least, one.result.objectives[1]);
+    if (one.result.objectives[0] <= most) continue;
+    most = one.result.objectives[0];
+    ids[one.born] = id;
+  }
+  EXPECT_EQ(objectives[0]["best"]["value"], most);
+  EXPECT_EQ(objectives[1]["best"]["value"], least);
+  const auto best = objectives[1]["best"]["individual"].get<std::uint32_t>();
+  EXPECT_EQ(archive_.known_individual(best).result.objectives[1], objectives[1]["best"]["value"]);
+  EXPECT_EQ(run["measures"].dump(), R"([{"name":"stature","unit":"m","role":"descriptor"}])");
+  ASSERT_GT(ids.size(), 1u);
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> found;
+  for (const BestSoFar& one : best_over_generations(archive_)) {
+    found.emplace_back(one.born, one.individual);
+    EXPECT_EQ(one.value, archive_.known_individual(one.individual).result.objectives[0]);
+  }
+  EXPECT_EQ(found, (std::vector<std::pair<std::uint32_t, std::uint32_t>>(ids.begin(), ids.end())));
+}
+
+TEST_F(RunJson, AReportShowsTheBestElites) {
+  const auto ids = best_elites(niche_map(archive_), 2);
+  ASSERT_EQ(ids.size(), 2u);
+  const Json run = reported_run(archive_, experiment_, *simulator_,
+                                {.best = 1, .best_of_others = 0, .ancestors = 0, .elites = 2}, 1'000'000);
+  EXPECT_THAT(robots_of(run), ElementsAre(Pair(ids[0], "best in distance"), Pair(ids[1], "elite")))
+      << "the best is an elite, too";
+  EXPECT_FALSE(run["robots"][1]["film"]["shots"].empty());
+}
+
+TEST_F(RunJson, AReportShowsTheLineOfTheBestFromItsFounder) {
+  Individual child = archive_.known_individual(archive_.best(1).at(0));
+  const std::uint32_t founder = child.id;
+  std::vector<std::uint32_t> line;
+  for (std::uint32_t generation = archive_.generations().back().generation + 1; line.size() < 4; ++generation) {
+    child.parents = {child.id};
+    child.id = 24 + static_cast<std::uint32_t>(line.size());
+    child.born = generation;
+    child.result.objectives[0] += 1;  // better than all before
+    archive_.commit({child}, {}, {}, {.generation = generation, .evaluations = child.id + 1});
+    line.push_back(child.id);
+  }
+  const auto shown = [&](std::size_t ancestors) {
+    return robots_of(reported_run(archive_, experiment_, *simulator_,
+                                  {.best = 1, .best_of_others = 0, .ancestors = ancestors, .elites = 0}, 1'000'000));
   };
-  EXPECT_TRUE(without("[scene.damping]")["limit"].is_null());
-  EXPECT_GT(without("[scene.damping]")["speed"], 0);
-  EXPECT_TRUE(without("[scene.friction]").is_null());
+  EXPECT_THAT(shown(4), ElementsAre(Pair(line[3], "best in distance"), Pair(founder, "founder"),
+                                    Pair(line[0], "ancestor"), Pair(line[1], "ancestor"), Pair(line[2], "ancestor")));
+  EXPECT_THAT(shown(2),
+              ElementsAre(Pair(line[3], "best in distance"), Pair(founder, "founder"), Pair(line[1], "ancestor")));
+}
+
+TEST_F(RunJson, AReportHasTheScoresOfTheLivingAndTheBestInEachObjective) {
+  const Json run = reported_run(archive_, experiment_, *simulator_, {.best = 1, .ancestors = 0}, 1'000'000, 1);
+  EXPECT_EQ(run["filmed_scenario"], "hurt");
+  ASSERT_EQ(run["population"].size(), living(population_.size() - 1, 0).size());
+  for (const Json& one : run["population"]) {
+    const auto id = one["id"].get<std::uint32_t>();
+    EXPECT_EQ(one["objectives"]["actuation-work"], archive_.known_individual(id).result.objectives[1]);
+    EXPECT_EQ(one["measures"]["stature"], archive_.measures(id)[0].value);
+  }
+  EXPECT_THAT(robots_of(run), ElementsAre(Pair(archive_.best(1).at(0), "best in distance"),
+                                          Pair(run["objectives"][1]["best"]["individual"], "best in actuation-work")));
+}
+
+using Distances = std::vector<std::vector<double>>;
+
+/// Returns the distances between bodies that are represented by one number each.
+Distances distances(const std::vector<double>& bodies) {
+  Distances all(bodies.size(), std::vector<double>(bodies.size()));
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    for (std::size_t j = i + 1; j < bodies.size(); ++j) all[i][j] = std::abs(bodies[i] - bodies[j]);
+  return all;
+}
+
+TEST(SceneEffect, HoldsTheMeansAndOfOneBodyADistanceAndNoMore) {
+  const SceneEffect effect = scene_effect(distances({0, 0.1, 0.2, 1, 1}), 3);
+  EXPECT_NEAR(effect.between, 0.9, 1e-12);
+  // the mean distance is 0.4/3 within the first scene and 0 within the other
+  EXPECT_NEAR(effect.within.value(), 0.2 / 3, 1e-12);
+  const SceneEffect of_one = scene_effect(distances({0, 0.4, 0.6}), 1);
+  EXPECT_NEAR(of_one.between, 0.5, 1e-12);
+  EXPECT_FALSE(of_one.within);
+  EXPECT_FALSE(of_one.p);
+}
+
+TEST(SceneEffect, IsAsRareAsItsDeal) {
+  // of the 20 ways to assign six bodies to two scenes, 2 give at least this effect; for ten bodies, it is 2 of the 252
+  // ways
+  EXPECT_NEAR(scene_effect(distances({0, 0.01, 0.02, 0.9, 0.91, 0.92}), 3).p.value(), 0.1, 0.015);
+  EXPECT_NEAR(scene_effect(distances({0, 0.1, 0.2, 0.3, 0.4, 1, 1.1, 1.2, 1.3, 1.4}), 5).p.value(), 2.0 / 252, 0.004);
+  EXPECT_NEAR(scene_effect(distances({0, 0.3, 0.5, 0.1, 0.8, 0.9}), 3).p.value(), 8.0 / 20, 0.02);
+  EXPECT_NEAR(scene_effect(distances({0, 0.6, 0.2, 0.5, 0.9, 0.4, 1}), 3).p.value(), 6.0 / 35, 0.016);
+  EXPECT_EQ(scene_effect(distances({0, 0.5, 1, 0, 0.5, 1}), 3).p, 1) << "no deal is less far apart";
+  EXPECT_EQ(scene_effect(distances({1, 1, 1, 1}), 2).p, 1) << "all are equal";
 }
 
 }  // namespace

@@ -4,14 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <regex>
 #include <set>
 #include <string>
 #include <vector>
+
+#include "support/scratch.hpp"
 
 namespace evodevo::EVODEVO_FILE {
 namespace {
@@ -53,24 +53,14 @@ std::size_t floor_of(const std::string& room) {
   return static_cast<std::size_t>(found - floors.begin());
 }
 
-bool is_source(const fs::path& file) {
-  static const std::set<std::string> endings{".cpp", ".hpp", ".cu", ".cuh"};
-  return endings.contains(file.extension().string());
-}
-
 std::vector<fs::path> sources_in(const std::string& folder) {
+  static const std::set<std::string> endings{".cpp", ".hpp", ".cu", ".cuh"};
   std::vector<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(source / folder))
-    if (entry.is_regular_file() && is_source(entry.path()) && room_of(entry.path()) != "framework/template")
+    if (entry.is_regular_file() && endings.contains(entry.path().extension()) &&
+        room_of(entry.path()) != "framework/template")
       files.push_back(entry.path());
   return files;
-}
-
-std::vector<std::string> lines_of(const fs::path& file) {
-  std::ifstream stream(file);
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
 }
 
 /// Returns the file of this project that an #include "..." names, or nothing if it belongs to another project.
@@ -84,12 +74,11 @@ template <class Use>
 void for_each_include(const Use& use) {
   static const std::regex include("#include \"([^\"]+)\"");
   for (const char* part : {"kernels", "framework"})
-    for (const fs::path& file : sources_in(part))
-      for (const std::string& line : lines_of(file)) {
-        std::smatch name;
-        if (!std::regex_search(line, name, include)) continue;
-        if (const auto other = included(name[1])) use(file, *other);
-      }
+    for (const fs::path& file : sources_in(part)) {
+      const std::string text = testing::content_of(file);
+      for (std::sregex_iterator found(text.begin(), text.end(), include), end; found != end; ++found)
+        if (const auto other = included((*found)[1])) use(file, *other);
+    }
 }
 
 TEST(Rooms, IncludeOnlyWhatLiesBelow) {
@@ -114,14 +103,13 @@ TEST(Rooms, OfTheCoreOpenOnlyTheOnesForCallers) {
   });
 }
 
-TEST(Rooms, HoldADozenModulesAtMost) {
+TEST(Rooms, HoldADozenModulesAtMostAndNoLongFiles) {
   std::map<fs::path, std::set<std::string>> modules;
-  for (const fs::path& file : sources_in("framework")) modules[file.parent_path()].insert(file.stem().string());
+  for (const fs::path& file : sources_in("framework")) {
+    modules[file.parent_path()].insert(file.stem().string());
+    EXPECT_LT(std::ranges::count(testing::content_of(file), '\n'), 400) << file;
+  }
   for (const auto& [folder, names] : modules) EXPECT_LE(names.size(), 12u) << folder;
-}
-
-TEST(Rooms, HaveNoLongFiles) {
-  for (const fs::path& file : sources_in("framework")) EXPECT_LT(lines_of(file).size(), 400u) << file;
 }
 
 }  // namespace

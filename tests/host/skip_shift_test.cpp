@@ -1,4 +1,4 @@
-// The paper's tallies, compared with their definition.
+// The choice of a body's time step, and the paper's tallies after so many steps, compared with their definition.
 #include "core/skip_shift.hpp"
 
 #include <gmock/gmock.h>
@@ -10,17 +10,16 @@
 
 #include "analysis/energy.hpp"
 #include "analysis/ground.hpp"
+#include "analysis/stability.hpp"
 #include "base/philox.hpp"
-#include "evolution/breeding.hpp"
-#include "life/evaluation.hpp"
+#include "core/simulator.hpp"
+#include "experiment/time_steps.hpp"
 #include "support/experiments.hpp"
+#include "support/lives.hpp"
 #include "support/messages.hpp"
 
 namespace evodevo::EVODEVO_FILE {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
 
 Rng stream(std::uint32_t individual) { return Rng(philox, {5, 0, individual, 0}); }
 
@@ -40,29 +39,33 @@ State resting(const Body& body, const Scene& scene) {
   return state;
 }
 
-TEST(SkipShift, EachGroupGivesAPointToItsMostAndTakesOneFromItsLeast) {
-  const Body body = chain(1000);
-  std::vector<double> points(1000);
-  Rng random = stream(1);
-  tally(body, resting(body, {}), random, points);
+/// Returns the points of the springs of a body at rest after so many tallies.
+std::vector<double> points_of(const Body& body, std::uint32_t seed, int tallies = 1) {
+  const State state = resting(body, {});
+  std::vector<double> points(body.springs.size());
+  Rng random = stream(seed);
+  for (int i = 0; i < tallies; ++i) tally(body, state, random, points);
+  return points;
+}
 
-  // computes the same groups again, group by group
-  std::vector<std::uint32_t> order(1000);
-  std::iota(order.begin(), order.end(), 0u);
-  Rng again = stream(1);
-  again.shuffle(order);
-  std::vector<double> expected(1000);
-  for (std::size_t group = 0; group < 256; ++group) {
-    const std::size_t first = group * 1000 / 256, last = (group + 1) * 1000 / 256;
-    std::uint32_t most = order[first], least = order[first];
-    for (std::size_t i = first; i < last; ++i) {
-      most = std::max(most, order[i]);  // force increases with the index
-      least = std::min(least, order[i]);
+TEST(SkipShift, EachGroupGivesAPointToItsMostAndTakesOneFromItsLeast) {
+  // computes the same groups again, group by group; a body with few springs has groups of two
+  for (const auto& [springs, groups] : {std::pair(1000u, 256u), {10u, 5u}}) {
+    std::vector<std::uint32_t> order(springs);
+    std::iota(order.begin(), order.end(), 0u);
+    Rng again = stream(1);
+    again.shuffle(order);
+    std::vector<double> expected(springs);
+    for (std::size_t group = 0; group < groups; ++group) {
+      const std::size_t first = group * springs / groups, last = (group + 1) * springs / groups;
+      const auto [least, most] = std::ranges::minmax(std::span(order).subspan(first, last - first));
+      expected[most] += 1;  // force increases with the index
+      expected[least] -= 1;
     }
-    expected[most] += 1;
-    expected[least] -= 1;
+    EXPECT_EQ(points_of(chain(springs), 1), expected);
   }
-  EXPECT_EQ(points, expected);
+  EXPECT_EQ(points_of(chain(3), 3), (std::vector<double>{-1, 0, 1})) << "an odd spring makes a group of three";
+  EXPECT_EQ(points_of(chain(1), 3), std::vector<double>{0}) << "nothing to compare";
 }
 
 TEST(SkipShift, ChanceDecidesAmongEquals) {
@@ -70,42 +73,13 @@ TEST(SkipShift, ChanceDecidesAmongEquals) {
   // indices
   Body body = chain(600);
   for (std::uint32_t i = 0; i < 600; ++i) body.springs[i].rest_length = i % 2 ? 0.9 : 0.8;
-  const State state = resting(body, {});
-  std::vector<double> points(600);
-  Rng random = stream(2);
-  for (int i = 0; i < 200; ++i) tally(body, state, random, points);
+  const std::vector<double> points = points_of(body, 2, 200);
   double halves[2][2] = {};
   for (std::size_t i = 0; i < 600; ++i) halves[i % 2][i / 300] += points[i];
   EXPECT_GT(halves[0][0], 10'000);
   EXPECT_LT(halves[1][0], -10'000);
   EXPECT_NEAR(halves[0][0], halves[0][1], 800);
   EXPECT_NEAR(halves[1][0], halves[1][1], 800);
-}
-
-TEST(SkipShift, FewSpringsAreRankedToo) {
-  // with groups of two, spring i has more force than i of its 9 possible partners, and less than the others
-  const Body body = chain(10);
-  const State state = resting(body, {});
-  constexpr int tallies = 10'000;
-  std::vector<double> points(10);
-  Rng random = stream(3);
-  for (int i = 0; i < tallies; ++i) tally(body, state, random, points);
-  for (std::size_t i = 0; i < 10; ++i) {
-    const double mean = (2 * static_cast<double>(i) - 9) / 9, deviation = std::sqrt(1 - mean * mean);
-    EXPECT_NEAR(points[i], tallies * mean, 5 * deviation * std::sqrt(tallies)) << i;
-  }
-}
-
-TEST(SkipShift, AnOddSpringMakesAGroupOfThree) {
-  const Body body = chain(3);
-  std::vector<double> points(3);
-  Rng random = stream(3);
-  tally(body, resting(body, {}), random, points);
-  EXPECT_EQ(points, (std::vector<double>{-1, 0, 1}));
-  const Body single = chain(1);
-  points.assign(1, 0);
-  tally(single, resting(single, {}), random, points);
-  EXPECT_EQ(points, std::vector<double>{0}) << "nothing to compare";
 }
 
 /// The task, with its stress, and the state after a run with tallies.
@@ -149,20 +123,6 @@ TEST(SkipShift, TalliesAfterEverySkipSteps) {
   EXPECT_EQ(whole.velocity, tallied.state.velocity);
 }
 
-TEST(SkipShift, FindsTheExtremesThatTheExactStressFinds) {
-  const Scene scene;
-  const auto simulator = make_cpu_simulator(scene, {}, 1);
-  Body body = chain(1000);
-  for (Mass& mass : body.masses) mass.mass = 0;  // held in place, so that forces are constant
-  const Tallied tallied = run(*simulator, body, resting(body, scene), 400, 10);
-  std::vector<std::size_t> order(1000);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(),
-            [&](auto a, auto b) { return tallied.task.stress[a] < tallied.task.stress[b]; });
-  const auto found = std::count_if(order.begin(), order.begin() + 100, [](auto s) { return s < 100; });
-  EXPECT_GT(found, 60) << "10 by chance";
-}
-
 TEST(SkipShift, ADivergedBodyEndsAndDisturbsNoOther) {
   const auto simulator = make_cpu_simulator({}, {}, 1);
   Body broken = chain(300);
@@ -187,23 +147,18 @@ TEST(SkipShift, ACycleWithoutATallyIsInvalid) {
   const Body body = chain(3);
   const Tallied none = run(*simulator, body, resting(body, {}), 19, 20);
   EXPECT_EQ(none.task.status, Status::invalid);
-  EXPECT_THAT(none.task.reason, AllOf(HasSubstr("19 steps"), HasSubstr("skip is 20")));
+  EXPECT_THAT(none.task.reason, testing::naming("19 steps", "skip is 20"));
   EXPECT_TRUE(none.task.stress.empty());
   EXPECT_EQ(run(*simulator, body, resting(body, {}), 20, 20).task.status, Status::ok);
 }
 
 TEST(SkipShift, WhereEveryBodyHasItsOwnStepACycleWithoutATallyIsInvalidToo) {
-  const Experiment experiment = testing::read(
-      testing::small_experiment,
-      {{"development.probe", "skip-shift", ""}, {"development.skip", "100000", ""}, {"simulation.dt", "auto", ""}});
-  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
-  const std::vector<Individual> individuals = breed(experiment, {}, 0, 0, 6);
-  std::vector<Newborn> newborns;
-  for (const Individual& individual : individuals) newborns.push_back({individual.id, 0, &individual.genome});
+  const Experiment experiment =
+      testing::small({"development.probe=skip-shift", "development.skip=100000", "simulation.dt=auto"});
   int without_tally = 0;
-  for (const Result& result : Evaluation(experiment, *simulator).evaluate(newborns, [](double) {})) {
-    EXPECT_EQ(result.status, Status::invalid);
-    without_tally += ::testing::Matches(testing::naming("steps", "skip is 100000"))(result.reason);
+  for (const Life& life : testing::Developed(experiment, 6).lives) {
+    EXPECT_EQ(life.result.status, Status::invalid);
+    without_tally += ::testing::Matches(testing::naming("steps", "skip is 100000"))(life.result.reason);
   }
   EXPECT_GE(without_tally, 3) << "the others have no body";
 }
@@ -212,19 +167,9 @@ TEST(SkipShift, DrivesDevelopment) {
   using Ends = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
   const auto springs_after = [](const char* probe, int threads) {
     const Experiment experiment =
-        testing::read(testing::small_experiment, {{"encoding.size", "[3, 2, 2]", ""},
-                                                  {"development.probe", probe, ""},
-                                                  {"development.skip", "10", ""},
-                                                  {"development.operator.0.springs", "20", ""}});
-    const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, threads);
-    const Evaluation evaluation(experiment, *simulator);
-    const std::vector<Individual> individuals = breed(experiment, {}, 0, 0, 6);
-    std::vector<Newborn> newborns;
-    for (const Individual& individual : individuals) newborns.push_back({individual.id, 0, &individual.genome});
-    std::vector<Life> lives = evaluation.birth.of(newborns);
-    evaluation.development.run(lives, [](double) {});
+        testing::small({"encoding.size=[3, 2, 2]", "development.skip=10", probe, "development.operator.0.springs=20"});
     std::vector<Ends> matured;
-    for (const Life& life : lives) {
+    for (const Life& life : testing::Developed(experiment, 6, threads).lives) {
       if (!life.alive()) continue;
       Ends& ends = matured.emplace_back();
       for (const Spring& spring : life.living.body.springs) ends.emplace_back(spring.a, spring.b);
@@ -232,8 +177,89 @@ TEST(SkipShift, DrivesDevelopment) {
     EXPECT_GE(matured.size(), 2u);
     return matured;
   };
-  EXPECT_EQ(springs_after("skip-shift", 1), springs_after("skip-shift", 4));
-  EXPECT_NE(springs_after("skip-shift", 1), springs_after("exact", 1));
+  const auto tallied = springs_after("development.probe=skip-shift", 1);
+  EXPECT_EQ(tallied, springs_after("development.probe=skip-shift", 4));
+  EXPECT_NE(tallied, springs_after("development.probe=exact", 1));
+}
+
+/// One mass with 399 springs of 10,000 N/m, all in nearly the same direction: omega^2 is about 399 k/m, and 2/omega is
+/// 0.45 ms.
+Body star() {
+  Body body;
+  body.materials = {{10000, 0, 0, 0}};
+  for (int i = 0; i < 400; ++i) body.masses.push_back({{i == 0 ? 0.0 : 1.0, 0, 1e-3 * i}, 0.2, 0, 0});
+  for (std::uint32_t i = 1; i < 400; ++i) body.springs.push_back({0, i, 1, 0});
+  return body;
+}
+
+LongestStep longest(const StepRule& rule, const Scene& scene = {}, Method method = Method::paper_euler,
+                    const Body& body = star()) {
+  return longest_step(rule, body, state_at_birth(body, {}).position, scene, method);
+}
+
+const Scene hard_floor{.gravity = {}, .floor = Floor{1e8}, .friction = {}, .damping = {}, .drag = {}};
+
+TEST(TimeSteps, ABodyThatAloneExceedsAFixedStepIsTold) {
+  EXPECT_THAT(longest({.dt = 0.0005}).failure, testing::at_place("unstable dt: ", "0.0005 s", "springs"));
+  EXPECT_EQ(longest({.dt = 0.0002}).failure, "");
+  EXPECT_EQ(longest({.dt = 0.0005, .refine = 2}).failure, "") << "half of it is borne";
+  EXPECT_THAT(longest({.dt = 0.0002}, hard_floor).failure,
+              testing::at_place("unstable dt: ", "0.0002 s", "lightest mass", "floor"));
+  Body fast = star();
+  fast.materials[0] = {1, 0.1, 1001, 0};
+  EXPECT_THAT(longest({.dt = 0.0005}, {}, Method::implicit, fast).failure,
+              testing::at_place("unstable dt: ", "0.0005 s", "muscle"));
+  EXPECT_EQ(longest({.dt = 0.0005, .run_unstable = true}, hard_floor).failure, "") << "as the file asks";
+}
+
+TEST(TimeSteps, WithoutAFixedStepABodyHasItsOwn) {
+  const LongestStep springs = longest({.dt = std::nullopt});
+  EXPECT_EQ(springs.failure, "");
+  EXPECT_NEAR(springs.dt, 0.9 * 2 / std::sqrt(399 * 10000 / 0.2), 1e-5);
+  EXPECT_DOUBLE_EQ(longest({.dt = std::nullopt}, hard_floor).dt, 1.2 * std::sqrt(0.2 / 1e8));
+  Scene floor = hard_floor;
+  floor.floor = Floor{1e18};
+  EXPECT_THAT(longest({.dt = std::nullopt}, floor).failure, testing::at_place("unstable dt: ", "5.3665631459"));
+}
+
+TEST(TimeSteps, MaterialsThatNoSpringHasShortenNone) {
+  Body with_others = star();
+  with_others.materials.push_back({1, 0.1, 70'001, 0});  // a muscle whose frequency is too high for any step
+  with_others.materials.push_back({1e15, 0, 0, 0});
+  with_others.masses.back().material = 2;
+  for (const Method method : {Method::paper_euler, Method::rk4, Method::implicit}) {
+    EXPECT_EQ(longest({.dt = std::nullopt}, {}, method, with_others).dt, longest({.dt = std::nullopt}, {}, method).dt);
+    EXPECT_EQ(longest({.dt = 0.0002}, {}, method, with_others).failure, "");
+  }
+  with_others.springs.front().material = 1;
+  EXPECT_DOUBLE_EQ(longest({.dt = std::nullopt}, {}, Method::implicit, with_others).dt, 0.05 / 70'001);
+}
+
+TEST(TimeSteps, AStepThatCannotBeComputedIsNotTold) {
+  const Body body = star();
+  std::vector<Vec3> positions = state_at_birth(body, {}).position;
+  positions[7].y = 1e200;  // its square is infinite
+  const std::string far = longest_step({.dt = std::nullopt}, body, positions, {}, Method::paper_euler).failure;
+  positions[7].y = std::nan("");
+  const std::string nowhere = longest_step({.dt = std::nullopt}, body, positions, {}, Method::rk4).failure;
+  EXPECT_THAT(nowhere, testing::at_place("unstable dt: "));
+  for (const std::string& failure : {far, nowhere}) {
+    EXPECT_EQ(failure.find("nan"), std::string::npos) << failure;
+    EXPECT_EQ(failure.find("inf"), std::string::npos) << failure;
+  }
+}
+
+TEST(TimeSteps, StepsDivideTheirDuration) {
+  const auto expect = [](const Pace& pace, double dt, std::uint64_t steps) {
+    EXPECT_DOUBLE_EQ(pace.dt, dt);
+    EXPECT_EQ(pace.steps, steps);
+  };
+  expect(pace_over(1, {.dt = 0.0005}, 1), 0.0005, 2000);
+  expect(pace_over(1, {.dt = 0.0005, .refine = 4}, 1), 0.000125, 8000);
+  expect(pace_over(1, {.dt = std::nullopt}, 0.3), 0.25, 4);
+  expect(pace_over(1, {.dt = std::nullopt, .refine = 4}, 0.3), 0.0625, 16);
+  expect(pace_over(0.25, {.dt = std::nullopt}, 0.25), 0.25, 1);
+  expect(pace_over(0.001, {.dt = std::nullopt}, 0.25), 0.001, 1);
 }
 
 }  // namespace

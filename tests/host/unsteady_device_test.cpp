@@ -7,9 +7,9 @@
 #include <thread>
 
 #include "core/simulator_group.hpp"
-#include "evolution/evolution.hpp"
 #include "support/experiments.hpp"
 #include "support/islands.hpp"
+#include "support/lives.hpp"
 #include "support/runs.hpp"
 #include "support/scratch.hpp"
 
@@ -48,33 +48,30 @@ class UnsteadySearch final : public NeighbourSearch {
 };
 
 /// A device that takes several batches at once. It is lost in the call of run() with the number `lost`.
-class UnsteadyDevice final : public Simulator {
+class UnsteadyDevice final : public testing::AlteredSimulator {
  public:
   UnsteadyDevice(const Experiment& experiment, std::uint64_t seed, int lost = -1)
-      : simulator_(make_cpu_simulator(experiment.scene, experiment.stepping, 3)), unrest_(seed), lost_(lost) {}
+      : AlteredSimulator(experiment, 3), unrest_(seed), lost_(lost) {}
 
   void run(std::span<Task> tasks, Recording recording) override {
     unrest_.yield();
     if (runs_++ == lost_) throw std::runtime_error("the device is lost");
-    simulator_->run(tasks, recording);
+    AlteredSimulator::run(tasks, recording);
     unrest_.yield();
   }
   NeighbourSearch& neighbours() override { return search_; }
-  Workers& workers() override { return simulator_->workers(); }
   int concurrency() const override { return 3; }
   std::shared_ptr<const void> announce(std::size_t) override {
     unrest_.yield();
     return {this, [](UnsteadyDevice* device) { device->unrest_.yield(); }};
   }
   std::optional<DeviceUse> device_use() const override { return DeviceUse{}; }
-  std::string device() const override { return simulator_->device(); }
 
   int runs() const { return runs_; }
 
  private:
-  std::unique_ptr<Simulator> simulator_;
   Unrest unrest_;
-  UnsteadySearch search_{simulator_->neighbours(), unrest_};
+  UnsteadySearch search_{AlteredSimulator::neighbours(), unrest_};
   int lost_;
   std::atomic<int> runs_ = 0;
 };
@@ -83,52 +80,42 @@ class UnsteadyRuns : public ::testing::Test {
  protected:
   Archive create(const std::string& name) { return Archive::create(scratch_ / name, experiment_, "test"); }
   Archive evolved(Archive archive, Simulator& simulator) {
-    evolve(experiment_, simulator, archive, stop_, Observer{});
+    evolve(experiment_, simulator, archive, false, Observer{});
     return archive;
   }
-  Archive calm() { return evolved(create("calm"), *make_cpu_simulator(experiment_.scene, experiment_.stepping, 1)); }
 
   testing::Scratch scratch_;
-  std::atomic<bool> stop_ = false;
+  // 40 individuals for three cohorts, some of which are refused because their bones are stiff
   Experiment experiment_ =
-      testing::read(testing::small_experiment, {{"encoding", "{name = 'neural', points = 12, neighbours = 4}", ""},
-                                                {"experiment.evaluations", "160", ""},
-                                                {"experiment.population", "40", ""},  // for three cohorts
-                                                {"experiment.verify_front", "true", ""},
-                                                {"materials.bone.stiffness", "3e5", ""},  // some are refused
-                                                {"simulation.unstable", "run", ""}});
+      testing::small({"encoding={name = 'neural', points = 12, neighbours = 4}", "experiment.evaluations=160",
+                      "experiment.population=40", "experiment.verify_front=true", "materials.bone.stiffness=3e5",
+                      "simulation.unstable=run"});
+  Archive calm_ = evolved(create("calm"), *make_cpu_simulator(experiment_.scene, experiment_.stepping, 1));
 };
 
-TEST_F(UnsteadyRuns, GiveTheResultsOfACalmDevice) {
-  const Archive calm = this->calm();
+TEST_F(UnsteadyRuns, OnOneDeviceAndOnSeveralGiveTheResultsOfACalmOne) {
   std::int64_t refused = 0;
-  for (const Summary& summary : calm.generations()) refused += summary.artefact + summary.passive;
+  for (const Summary& summary : calm_.generations()) refused += summary.artefact + summary.passive;
   EXPECT_GT(refused, 0);
   for (const std::uint64_t seed : {1, 2, 3}) {
     UnsteadyDevice device(experiment_, seed);
-    testing::expect_same_runs(calm, evolved(create(std::to_string(seed)), device));
-  }
-}
-
-TEST_F(UnsteadyRuns, OnSeveralDevicesGiveTheSame) {
-  const Archive calm = this->calm();
-  for (const std::uint64_t seed : {1, 2, 3}) {
+    testing::expect_same_runs(calm_, evolved(create(std::to_string(seed)), device));
     std::vector<std::unique_ptr<Simulator>> devices;
-    for (const std::uint64_t device : {10, 20, 30})
-      devices.push_back(std::make_unique<UnsteadyDevice>(experiment_, seed + device));
-    testing::expect_same_runs(calm, evolved(create(std::to_string(seed)), *make_simulator_group(std::move(devices))));
+    for (const std::uint64_t number : {10, 20, 30})
+      devices.push_back(std::make_unique<UnsteadyDevice>(experiment_, seed + number));
+    const auto group = make_simulator_group(std::move(devices));
+    testing::expect_same_runs(calm_, evolved(create("group " + std::to_string(seed)), *group));
   }
 }
 
 TEST_F(UnsteadyRuns, ThatLoseTheDeviceGoOnFromTheLastGeneration) {
-  const Archive calm = this->calm();
   UnsteadyDevice whole(experiment_, 0);
   evolved(create("whole"), whole);
   for (int lost = 0; lost < whole.runs(); lost += whole.runs() / 4) {
     const std::string name = std::to_string(lost);
     UnsteadyDevice broken(experiment_, static_cast<std::uint64_t>(lost), lost), other(experiment_, 1);
     EXPECT_THROW(evolved(create(name), broken), std::runtime_error) << lost;
-    testing::expect_same_runs(calm, evolved(Archive::resume(scratch_ / name), other));
+    testing::expect_same_runs(calm_, evolved(Archive::resume(scratch_ / name), other));
   }
 }
 

@@ -1,77 +1,51 @@
-// Windows of fitness operators: what is observed does not change the life, and what is seen is true.
+// Windows of fitness operators: what is observed does not change the life, and what is seen is true. The top speed that
+// friction allows against damping: its formula, and that simulated bodies obey it.
 #include "life/measurement/windows.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
+#include <regex>
 
-#include "evolution/breeding.hpp"
-#include "life/evaluation.hpp"
+#include "analysis/ground.hpp"
+#include "cpu/simulator.hpp"
+#include "life/measurement/top_speed.hpp"
 #include "support/channels.hpp"
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
+#include "support/refusals.hpp"
+#include "support/scorer.hpp"
 
 namespace evodevo::EVODEVO_FILE {
 namespace {
 
-const Progress unwatched = [](double) {};
+using testing::alive, testing::score_by, testing::Scorer;
+using See = std::function<void(const Observation&)>;
 
 /// A fitness operator that scores the way along x, and calls a function with what it sees.
-class Spy final : public Fitness {
- public:
-  using See = std::function<void(const Observation&)>;
-  explicit Spy(
-      Request request, See see = [](const Observation&) {})
-      : request_(request), see_(std::move(see)) {}
-  Request observes() const override { return request_; }
-  std::vector<Objective> objectives() const override { return {{"way", "m", true}}; }
-  std::vector<double> score(const Observation& seen) const override {
-    see_(seen);
-    double score = seen.centre_after.x - seen.centre_before.x;
-    if (request_.work) score += seen.work;
-    for (std::size_t i = 0; request_.channels.contact && i < seen.samples.size(); ++i) score += seen.samples.contact(i);
-    return {score};
-  }
-
- private:
-  Request request_;
-  See see_;
-};
-
-void set_fitness(Experiment& experiment, std::vector<Scored> fitness) {
-  experiment.fitness = std::move(fitness);
-  experiment.objectives.clear();
-  for (std::size_t i = 0; i < experiment.fitness.size(); ++i)
-    experiment.objectives.push_back({"way" + std::to_string(i), "m", true});
+Scorer spy(
+    const Request& request, const See& see = [](const Observation&) {}) {
+  return {request, {{"way", "m", true}}, [=](const Observation& seen) {
+            see(seen);
+            double score = seen.centre_after.x - seen.centre_before.x;
+            if (request.work) score += seen.work;
+            for (std::size_t i = 0; request.channels.contact && i < seen.samples.size(); ++i)
+              score += seen.samples.contact(i);
+            return std::vector{score};
+          }};
 }
 
-template <class... Spies>
-void spy_on(Experiment& experiment, Spies... spies) {
-  std::vector<Scored> fitness;
-  (fitness.push_back({std::make_unique<Spy>(std::move(spies))}), ...);
-  set_fitness(experiment, std::move(fitness));
-}
-
-Life lived(const Experiment& experiment, const Genome& genome = {2, 2}) {
-  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
-  const Evaluation evaluation(experiment, *simulator);
-  Matured matured = evaluation.matured(evaluation.birth.of(std::vector<Newborn>{{0, 0, &genome}}), unwatched);
-  evaluation.measurement.run(matured, unwatched);
-  return std::move(matured.lives.front());
-}
+Life lived(const Experiment& experiment) { return testing::lived(experiment, {2, 2}); }
 
 void expect_same_life(const Life& a, const Life& b) {
-  ASSERT_TRUE(a.alive()) << a.result.reason;
-  ASSERT_TRUE(b.alive()) << b.result.reason;
   EXPECT_EQ(a.result.record, b.result.record);
   EXPECT_EQ(a.result.spring_evaluations, b.result.spring_evaluations);
   EXPECT_EQ(a.living.state.position, b.living.state.position);
   EXPECT_EQ(a.living.state.velocity, b.living.state.velocity);
   EXPECT_EQ(a.living.state.time, b.living.state.time);
   EXPECT_EQ(a.living.state.start_energy, b.living.state.start_energy);
-  EXPECT_EQ(a.result.objectives.front(), b.result.objectives.front());
+  EXPECT_EQ(a.result.objectives.at(0), b.result.objectives.at(0));
 }
 
 /// The method, the precision and the time step of an experiment.
@@ -79,72 +53,58 @@ using Way = std::tuple<std::string, std::string, std::string>;
 
 class Observing : public ::testing::TestWithParam<Way> {
  protected:
-  static Experiment experiment(std::vector<Override> more = {}) {
+  static Experiment experiment(const std::string& probe) {
     const auto& [method, precision, step] = GetParam();
-    const bool has_own_step = method != "implicit" && method != "xpbd";  // which are stable at any step
-    const std::string dt = has_own_step ? step : "0.0001";
-    std::vector<Override> overrides{{"simulation.method", method, ""},  {"simulation.precision", precision, ""},
-                                    {"simulation.dt", dt, ""},          {"development.cycle_time", "0.0707", ""},
-                                    {"fitness.0.settle", "0.0511", ""}, {"fitness.0.window", "0.1001", ""},
-                                    {"fitness.1.settle", "0.0511", ""}, {"fitness.1.window", "0.1001", ""}};
-    overrides.insert(overrides.end(), more.begin(), more.end());
-    return testing::read(testing::small_experiment, overrides);
+    return testing::small({"simulation.method=" + method, "simulation.precision=" + precision, "simulation.dt=" + step,
+                           "development.cycle_time=0.0707", "development.skip=7", "development.probe=" + probe});
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Ways, Observing,
-                         ::testing::Combine(::testing::Values("paper-euler", "symplectic-euler", "velocity-verlet",
-                                                              "rk4", "implicit", "xpbd"),
-                                            ::testing::Values("float", "double"), ::testing::Values("0.0001", "auto")),
-                         [](const auto& instance) {
-                           std::string name = std::get<0>(instance.param) + "_" + std::get<1>(instance.param) + "_" +
-                                              (std::get<2>(instance.param) == "auto" ? "auto" : "fixed");
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name;
-                         });
-
-TEST_P(Observing, ChangesNoLife) {
-  const Request first{.settle = 0.0511, .window = 0.1001, .work = true, .rate = 250, .channels = {.contact = true}};
-  Experiment plain = experiment(), watched = experiment();
-  spy_on(plain, Spy(first));
-  spy_on(watched, Spy(first), Spy({.settle = 0.0133, .window = 0.0417, .work = true}),
-         Spy({.settle = 0, .window = 0.1512, .rate = 333, .channels = test::all_channels}),
-         Spy({.settle = 0.0007, .window = 0.1331, .cycle = 0, .rate = 97, .channels = test::all_channels}),
-         Spy({.settle = 0, .window = 0.0701, .work = true, .cycle = 1, .rate = 1000, .channels = {.contact = true}}));
-  expect_same_life(lived(plain), lived(watched));
+std::string name_of(const ::testing::TestParamInfo<Way>& instance) {
+  const auto& [method, precision, step] = instance.param;
+  return std::regex_replace(method + "_" + precision + "_" + step, std::regex("[-.]"), "_");
 }
 
-TEST_P(Observing, ChangesNoLifeWithTalliesEither) {
-  const std::vector<Override> tallies{{"development.probe", "skip-shift", ""}, {"development.skip", "7", ""}};
-  Experiment plain = experiment(tallies), watched = experiment(tallies);
-  const Request first{.settle = 0.0511, .window = 0.1001};
-  spy_on(plain, Spy(first));
-  spy_on(watched, Spy(first),
-         Spy({.settle = 0.0007,
+using ::testing::Combine, ::testing::Values;
+INSTANTIATE_TEST_SUITE_P(FixedSteps, Observing,
+                         Combine(Values("paper-euler", "symplectic-euler", "velocity-verlet", "rk4", "implicit",
+                                        "xpbd"),
+                                 Values("float", "double"), Values("0.0001")),
+                         name_of);
+INSTANTIATE_TEST_SUITE_P(OwnSteps, Observing,
+                         Combine(Values("paper-euler", "symplectic-euler", "velocity-verlet", "rk4"),
+                                 Values("float", "double"), Values("auto")),
+                         name_of);
+
+TEST_P(Observing, ChangesNoLifeWithTalliesOrWithout) {
+  const Request first{.settle = 0.0511, .window = 0.1001, .work = true, .rate = 250, .channels = {.contact = true}};
+  for (const std::string probe : {"exact", "skip-shift"}) {
+    SCOPED_TRACE(probe);
+    Experiment plain = experiment(probe), watched = experiment(probe);
+    score_by(plain, {spy(first)});
+    score_by(
+        watched,
+        {spy(first), spy({.settle = 0.0133, .window = 0.0417, .work = true}),
+         spy({.settle = 0, .window = 0.1512, .rate = 333, .channels = test::all_channels}),
+         spy({.settle = 0.0007,
               .window = 0.1331,
               .work = true,
               .cycle = 0,
               .rate = 97,
-              .channels = {.centre = true, .contacts = true}}));
-  expect_same_life(lived(plain), lived(watched));
-}
-
-/// The body only falls: z = -g t^2/2 for a second-order method.
-Experiment falling(const std::string& dt) {
-  Experiment experiment = testing::read(testing::small_experiment, {{"simulation.dt", dt, ""},
-                                                                    {"simulation.method", "velocity-verlet", ""},
-                                                                    {"simulation.precision", "double", ""},
-                                                                    {"development.cycles", "3", ""}});
-  experiment.scene = {};
-  experiment.scene.gravity = Gravity{};
-  return experiment;
+              .channels = test::all_channels}),
+         spy({.settle = 0, .window = 0.0701, .work = true, .cycle = 1, .rate = 1000, .channels = {.contact = true}})});
+    expect_same_life(alive(lived(plain)), alive(lived(watched)));
+  }
 }
 
 double fallen(double from, double to) { return 9.81 / 2 * (to * to - from * from); }
 
 TEST(Windows, WithinTheLifeRunThroughDevelopment) {
-  for (const char* dt : {"0.0005", "auto"}) {
-    Experiment experiment = falling(dt);
+  for (const char* dt : {"simulation.dt=0.0005", "simulation.dt=auto"}) {
+    Experiment experiment = testing::small(
+        {dt, "simulation.method=velocity-verlet", "simulation.precision=double", "development.cycles=3"});
+    experiment.scene = {};  // the body only falls: z = -g t^2/2 for a second-order method
+    experiment.scene.gravity = Gravity{};
     int calls = 0;
     const auto see = [&](const Observation& seen) {
       ++calls;
@@ -161,20 +121,17 @@ TEST(Windows, WithinTheLifeRunThroughDevelopment) {
         EXPECT_EQ(seen.samples.numbers(i).size(), 12u);
       }
     };
-    spy_on(
-        experiment,
-        Spy({.settle = 0.02, .window = 0.06, .cycle = 1, .rate = 100, .channels = {.centre = true, .positions = true}},
-            see));
-    const Life life = lived(experiment);
-    ASSERT_TRUE(life.alive()) << life.result.reason;
+    Request request{.settle = 0.02, .window = 0.06, .cycle = 1, .rate = 100};
+    request.channels = {.centre = true, .positions = true};
+    score_by(experiment, {spy(request, see)});
+    EXPECT_NEAR(alive(lived(experiment)).living.state.time, 0.15, 1e-9) << "no final evaluation follows";
     EXPECT_EQ(calls, 1);
-    EXPECT_NEAR(life.living.state.time, 0.15, 1e-9) << "no final evaluation follows";
   }
 }
 
 TEST(Windows, GoOnCountingAcrossEdits) {
   // a body at rest on the ground: its lowest masses touch the ground all the time, whatever its springs do
-  Experiment experiment = testing::read(testing::small_experiment, {{"development.cycles", "4", ""}});
+  Experiment experiment = testing::small({"development.cycles=4"});
   double all = 0, work = 0;
   const auto see = [&](const Observation& seen) {
     for (std::size_t i = 1; i < seen.samples.size(); ++i) {
@@ -192,24 +149,18 @@ TEST(Windows, GoOnCountingAcrossEdits) {
     work = seen.samples.work(seen.samples.size() - 1);
     EXPECT_NEAR(work, seen.work, 1e-9 * work);
   };
-  spy_on(experiment, Spy({.settle = 0,
-                          .window = 0.2,
-                          .work = true,
-                          .cycle = 0,
-                          .rate = 35,
-                          .channels = {.contact = true, .work = true, .contacts = true}},
-                         see));
-  const Life life = lived(experiment);
-  ASSERT_TRUE(life.alive()) << life.result.reason;
-  EXPECT_FALSE(life.result.record.empty()) << "there must be edits";
+  Request request{.settle = 0, .window = 0.2, .work = true, .cycle = 0, .rate = 35};
+  request.channels = {.contact = true, .work = true, .contacts = true};
+  score_by(experiment, {spy(request, see)});
+  EXPECT_FALSE(alive(lived(experiment)).result.record.empty()) << "there must be edits";
   EXPECT_GT(all, 0.1);
   EXPECT_GT(work, 0);
 }
 
 TEST(Windows, SampleOnlyAsManyBodiesAtOnceAsFitInMemory) {
   Experiment experiment = testing::read(testing::small_experiment);
-  spy_on(experiment, Spy({.settle = 0, .window = 0.05, .rate = 1e6, .channels = {.positions = true}}),
-         Spy({.settle = 0, .window = 0.05, .cycle = 0, .rate = 1e6, .channels = {.positions = true}}));
+  score_by(experiment, {spy({.settle = 0, .window = 0.05, .rate = 1e6, .channels = {.positions = true}}),
+                        spy({.settle = 0, .window = 0.05, .cycle = 0, .rate = 1e6, .channels = {.positions = true}})});
   // a window has 50,001 samples, each with three floats for each mass
   std::vector<Life> lives(5);
   for (Life& life : lives)
@@ -226,46 +177,34 @@ TEST(Windows, SampleOnlyAsManyBodiesAtOnceAsFitInMemory) {
 
 TEST(Windows, AskForNothingThatIsNotRequested) {
   Experiment experiment = testing::read(testing::small_experiment);
-  const auto told = [&](const Spy::See& see) {
-    spy_on(experiment, Spy({.settle = 0, .window = 0.05, .rate = 100, .channels = {.centre = true}}, see));
-    try {
-      lived(experiment);
-    } catch (const std::exception& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+  const Request centres{.settle = 0, .window = 0.05, .rate = 100, .channels = {.centre = true}};
+  const auto told = [&](const See& see, const std::vector<Scorer>& others = {}) {
+    std::vector<Scorer> all{spy(centres, see)};
+    all.insert(all.end(), others.begin(), others.end());
+    score_by(experiment, all);
+    return testing::refusal<std::exception>([&] { lived(experiment); });
   };
   const auto number = [](double) {};
-  EXPECT_EQ(told([&](const Observation& o) { number(o.samples.centre(5).x); }), "");
-  EXPECT_THAT(told([&](const Observation& o) { number(o.work); }), testing::naming("work", "Request::work"));
-  EXPECT_THAT(told([&](const Observation& o) { number(o.samples.work(1)); }), testing::naming("\"work\"", "channels"));
-  EXPECT_THAT(told([&](const Observation& o) { number(o.samples.box(1).low.x); }), testing::naming("\"box\""));
-  EXPECT_THAT(told([&](const Observation& o) { number(o.samples.contact(1)); }), testing::naming("\"contact\""));
-  EXPECT_THAT(told([&](const Observation& o) { number(o.samples.position(1, 0).x); }),
-              testing::naming("\"positions\""));
-  EXPECT_THAT(told([&](const Observation& o) { number(o.samples.velocity(1, 0).x); }),
-              testing::naming("\"velocities\""));
-  EXPECT_THAT(told([&](const Observation& o) { number(o.samples.contact(1, 0)); }), testing::naming("\"contacts\""));
-  EXPECT_THAT(told([&](const Observation& o) { number(o.samples.force(1, 0)); }), testing::naming("\"forces\""));
-  EXPECT_THAT(told([&](const Observation& o) { number(double(o.samples.body(1).masses.size())); }),
-              testing::naming("body", "Request::channels"));
-  EXPECT_THAT(told([&](const Observation& o) { number(o.samples.centre(6).x); }),
-              testing::naming("sample 6", "only 6"));
-}
-
-TEST(Windows, AskForNothingThatOthersRequestedEither) {
-  Experiment experiment = testing::read(testing::small_experiment);
-  const Request centres{.settle = 0, .window = 0.05, .rate = 100, .channels = {.centre = true}};
+  EXPECT_EQ(told([&](auto& o) { number(o.samples.centre(5).x); }), "no refusal");
+  EXPECT_THAT(told([&](auto& o) { number(o.work); }), testing::naming("work", "Request::work"));
+  EXPECT_THAT(told([&](auto& o) { number(o.samples.work(1)); }), testing::naming("\"work\"", "channels"));
+  EXPECT_THAT(told([&](auto& o) { number(o.samples.box(1).low.x); }), testing::naming("\"box\""));
+  EXPECT_THAT(told([&](auto& o) { number(o.samples.contact(1)); }), testing::naming("\"contact\""));
+  EXPECT_THAT(told([&](auto& o) { number(o.samples.position(1, 0).x); }), testing::naming("\"positions\""));
+  EXPECT_THAT(told([&](auto& o) { number(o.samples.velocity(1, 0).x); }), testing::naming("\"velocities\""));
+  EXPECT_THAT(told([&](auto& o) { number(o.samples.contact(1, 0)); }), testing::naming("\"contacts\""));
+  EXPECT_THAT(told([&](auto& o) { number(o.samples.force(1, 0)); }), testing::naming("\"forces\""));
+  EXPECT_THAT(told([&](auto& o) { number(o.samples.centre(6).x); }), testing::naming("sample 6", "only 6"));
+  const See body = [](const Observation& o) { static_cast<void>(o.samples.body(1)); };
+  EXPECT_THAT(told(body), testing::naming("body", "Request::channels"));
   Request places = centres;
   places.channels = {.positions = true};
-  spy_on(experiment, Spy(centres, [](const Observation& o) { static_cast<void>(o.samples.body(1)); }), Spy(places));
-  EXPECT_THAT([&] { lived(experiment); },
-              ::testing::ThrowsMessage<std::runtime_error>(testing::naming("body", "Request::channels")));
+  EXPECT_THAT(told(body, {spy(places)}), testing::naming("body", "Request::channels")) << "nor for what others asked";
 }
 
 TEST(Windows, ShorterThanAStepAreInvalid) {
   Experiment experiment = testing::read(testing::small_experiment);
-  spy_on(experiment, Spy({.settle = 0.01, .window = 0.0001}));
+  score_by(experiment, {spy({.settle = 0.01, .window = 0.0001})});
   const Life life = lived(experiment);
   EXPECT_EQ(life.result.status, Status::invalid);
   EXPECT_THAT(life.result.reason, testing::naming("window", "step"));
@@ -279,7 +218,7 @@ struct Remover final : Devo {
 };
 
 TEST(Windows, FollowMassesByTheirNumbers) {
-  Experiment experiment = testing::read(testing::small_experiment, {{"development.cycles", "4", ""}});
+  Experiment experiment = testing::small({"development.cycles=4"});
   experiment.devo[0].op = std::make_unique<Remover>();
   const auto see = [](const Observation& seen) {
     bool removed = false;
@@ -294,7 +233,8 @@ TEST(Windows, FollowMassesByTheirNumbers) {
     }
     EXPECT_TRUE(removed);
   };
-  spy_on(experiment, Spy({.settle = 0, .window = 0.2, .cycle = 0, .rate = 70, .channels = {.contacts = true}}, see));
+  score_by(experiment,
+           {spy({.settle = 0, .window = 0.2, .cycle = 0, .rate = 70, .channels = {.contacts = true}}, see)});
   ASSERT_TRUE(lived(experiment).alive());
 }
 
@@ -319,13 +259,64 @@ TEST(Windows, ShowPartsByTheirIndices) {
     EXPECT_NEAR(sum.x / 12, seen.samples.velocity(3).x, 1e-5);
     EXPECT_NEAR(sum.z / 12, seen.samples.velocity(3).z, 1e-5);
   };
-  spy_on(experiment, Spy({.settle = 0,
-                          .window = 0.05,
-                          .rate = 100,
-                          .channels = {.centre = true, .positions = true, .velocities = true, .forces = true}},
-                         see));
+  Request request{.settle = 0, .window = 0.05, .rate = 100};
+  request.channels = {.centre = true, .positions = true, .velocities = true, .forces = true};
+  score_by(experiment, {spy(request, see)});
   ASSERT_TRUE(lived(experiment).alive());
   EXPECT_EQ(calls, 1);
+}
+
+const Scene hillside{Gravity{3.71, 12.3}, Floor{}, Friction{0.47}, Damping{7.9}, std::nullopt};
+
+TEST(TopSpeed, IsTheBalanceOfFrictionWeightAndDamping) {
+  EXPECT_NEAR(top_speed(hillside, 1), 0.3156983672, 1e-9);
+  EXPECT_NEAR(top_speed(hillside, -1), 0.1156115994, 1e-9);
+  EXPECT_NEAR(top_speed(hillside, 0.6), 0.2756810137, 1e-9);
+  Scene level = hillside;
+  level.gravity->slope = 0;
+  EXPECT_DOUBLE_EQ(top_speed(level, 1), 0.47 * 3.71 / 7.9);
+  EXPECT_EQ(top_speed(level, 1), top_speed(level, -1));
+  Scene scene = hillside;
+  scene.damping->rate = 0;
+  EXPECT_TRUE(std::isinf(top_speed(scene, 1)));
+  scene.damping.reset();
+  EXPECT_TRUE(std::isinf(top_speed(scene, -1)));
+}
+
+TEST(TopSpeed, IsOnlyForScenesWhereNothingButFrictionPushes) {
+  EXPECT_TRUE(moves_by_friction(hillside));
+  const auto still = [](const auto& change) {
+    Scene scene = hillside;
+    change(scene);
+    return moves_by_friction(scene);
+  };
+  EXPECT_TRUE(still([](Scene& s) { s.damping.reset(); }));
+  EXPECT_FALSE(still([](Scene& s) { s.gravity.reset(); }));
+  EXPECT_FALSE(still([](Scene& s) { s.gravity->acceleration = 0; }));
+  EXPECT_FALSE(still([](Scene& s) { s.floor.reset(); }));
+  EXPECT_FALSE(still([](Scene& s) { s.floor->stiffness = 0; }));
+  EXPECT_FALSE(still([](Scene& s) { s.floor->roughness = 0.01; }));
+  EXPECT_FALSE(still([](Scene& s) { s.friction.reset(); }));
+  EXPECT_FALSE(still([](Scene& s) { s.friction->coefficient = 0; }));
+  EXPECT_FALSE(still([](Scene& s) { s.drag = Drag{0.1}; }));
+  EXPECT_TRUE(still([](Scene& s) { s.drag = Drag{0}; }));
+}
+
+/// Where every robot slides, what holds it back is all that it has: it slides as fast as the limit is below 0.
+TEST(TopSpeed, BelowZeroItIsTheSpeedOfSliding) {
+  Scene scene = hillside;
+  scene.gravity->slope = 40;
+  ASSERT_LT(top_speed(scene, -1), -0.1);
+  const Stepping stepping{Method::velocity_verlet, Precision::float64, Materials::table};
+  Body block;
+  block.masses = {{{0, 0, 0}, 0.3}, {{0.7, 0, 0}, 0.3}, {{0.2, 0.5, 0}, 0.3}};
+  block.springs = {{0, 1, 0.7, 0}, {0, 2, std::hypot(0.2, 0.5), 0}, {1, 2, std::hypot(0.5, 0.5), 0}};
+  block.materials = {{1000, 0, 0, 0}};
+  State state = state_at_birth(block, scene);
+  Task task{.body = &block, .state = &state, .dt = 1e-4, .steps = 20'000};
+  make_cpu_simulator(scene, stepping, 1)->run({&task, 1}, {});
+  ASSERT_EQ(task.status, Status::ok) << task.reason;
+  for (const Vec3& velocity : state.velocity) EXPECT_NEAR(velocity.x, -top_speed(scene, -1), 1e-4);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@ namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 using CloudFile = FromFile;
+using evodevo::testing::naming;
 
 // formats ------------------------------------------------------------------------------------------------------------
 
@@ -42,22 +43,15 @@ TEST_F(CloudFile, ReadsWhatPlyFilesMayHave) {
 // broken files -------------------------------------------------------------------------------------------------------
 
 TEST(CloudWithoutFile, SaysWhatToSet) {
-  try {
-    make<Encoding>("cloud");
-    FAIL() << "accepted";
-  } catch (const ConfigError& error) {
-    EXPECT_THAT(error.what(), evodevo::testing::naming("test.file", "PLY or OBJ file"));
-  }
+  EXPECT_THAT([] { make<Encoding>("cloud"); },
+              ::testing::ThrowsMessage<ConfigError>(naming("test.file", "PLY or OBJ file")));
 }
 
 TEST_F(CloudFile, NamesPlaceAndRemedyOfABrokenObjFile) {
-  using evodevo::testing::naming;
   const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   EXPECT_THAT(complaint(""), naming("no vertices", "PLY or OBJ"));
-  EXPECT_THAT(complaint(std::string(1000, '\0')), naming("no vertices", "PLY or OBJ"));
   EXPECT_THAT(complaint("solid stl\nfacet normal 0 0 1\n"), naming("no vertices", "PLY or OBJ"));
   EXPECT_THAT(complaint("v 0 0 0\nv 1 nan 0\n"), naming("vertex 2", "not finite"));
-  EXPECT_THAT(complaint("v 0 0 0\nv 1 -inf 0\n"), naming("vertex 2", "not finite"));
   EXPECT_THAT(complaint("v 0 0 0\nv 1 1e999 0\n"), naming("line 2", "three coordinates"));
   EXPECT_THAT(complaint("v 0 0 0\n\nv 1 0\n"), naming("line 3", "three coordinates"));
   EXPECT_THAT(complaint("v 0 0 0\nv one 0 0\n"), naming("line 2", "three coordinates"));
@@ -74,7 +68,6 @@ TEST_F(CloudFile, NamesPlaceAndRemedyOfABrokenObjFile) {
 }
 
 TEST_F(CloudFile, NamesASurfaceThatEnclosesNoVolume) {
-  using evodevo::testing::naming;
   EXPECT_THAT(complaint("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n"), naming("encloses", "closed surface"));
   Mesh inwards = cuboid({0, 0, 0}, {1, 1, 1});
   for (auto& face : inwards.faces) std::reverse(face.begin(), face.end());
@@ -82,7 +75,6 @@ TEST_F(CloudFile, NamesASurfaceThatEnclosesNoVolume) {
 }
 
 TEST_F(CloudFile, NamesPlaceAndRemedyOfABrokenPlyFile) {
-  using evodevo::testing::naming;
   const std::string xyz = "property float x\nproperty float y\nproperty float z\n", begin = "ply\nformat ascii 1.0\n";
   const std::string two = begin + "element vertex 2\n" + xyz;
   const std::string face = "element face 1\nproperty list char int vertex_indices\nend_header\n";
@@ -117,10 +109,10 @@ TEST_F(CloudFile, ReservesNothingForWhatAHeaderPromises) {
       "element vertex 18446744073709551615\nproperty double x\nproperty double y\nproperty double z\n";
   for (const std::string format : {"ascii", "binary_little_endian", "binary_big_endian"})
     EXPECT_THAT(complaint("ply\nformat " + format + " 1.0\n" + count + "end_header\n"),
-                evodevo::testing::naming("item 1 of 18446744073709551615", "ends here"));
+                naming("item 1 of 18446744073709551615", "ends here"));
   EXPECT_THAT(complaint("ply\nformat binary_little_endian 1.0\nelement face 1\nproperty list uint int vertex_index\n"
                         "end_header\n\xff\xff\xff\xff"),
-              evodevo::testing::naming("face", "ends here"));
+              naming("face", "ends here"));
 }
 
 TEST_F(CloudFile, BearsAnyCutAndAnyChangedByte) {

@@ -6,10 +6,8 @@
 namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
-/// An observation of a body that is 2 m long and moves by (3, 4, 1) m; `offset` shifts it.
-Observation moved(Vec3 offset = {}) {
-  return {{offset, offset + Vec3{1, 2, 0.5}}, offset + Vec3{5, 5, 5}, offset + Vec3{8, 9, 6}, 10, 0};
-}
+/// An observation of a body that is 2 m long, moves by (3, 4, 1) m, and does some work.
+Observation moved(double work = 0) { return {{{}, {1, 2, 0.5}}, {5, 5, 5}, {8, 9, 6}, 10, work}; }
 
 double distance(const std::string& toml, const Observation& observation) {
   const auto scores = make<Fitness>("distance", toml)->score(observation);
@@ -17,42 +15,25 @@ double distance(const std::string& toml, const Observation& observation) {
   return scores.at(0);
 }
 
-TEST(Distance, IsTheWayInBodyLengths) {
-  EXPECT_DOUBLE_EQ(distance("", moved()), 1.5);
+TEST(Distance, IsTheWayInBodyLengthsOrInAGivenLength) {
   EXPECT_DOUBLE_EQ(distance("direction = [0, 1, 0]", moved()), 2);
   EXPECT_DOUBLE_EQ(distance("direction = [0, 0, -1]", moved()), -0.5);
   EXPECT_DOUBLE_EQ(distance("direction = [1, 1, 0]", moved()), 7 / std::sqrt(2.0) / 2);
-}
-
-TEST(Distance, IsInTheSameLengthForAllBodiesIfOneIsGiven) {
+  for (const auto* toml : {"", "direction = [1, 0, 0]", "direction = [0.001, 0, 0]", "direction = [900, 0, 0]"})
+    EXPECT_NEAR(distance(toml, moved()), 1.5, 1e-12) << toml;
   EXPECT_DOUBLE_EQ(distance("length = 0.5", moved()), 6);
   Observation longer = moved();
   longer.box.high.z += 10;
   EXPECT_DOUBLE_EQ(distance("length = 0.5", longer), 6);
 }
 
-TEST(Distance, DoesNotDependOnTheDirectionsLength) {
-  for (const auto* toml : {"direction = [1, 0, 0]", "direction = [0.001, 0, 0]", "direction = [900, 0, 0]"})
-    EXPECT_NEAR(distance(toml, moved()), 1.5, 1e-12);
-}
-
-TEST(Distance, DoesNotDependOnThePlace) { EXPECT_NEAR(distance("", moved({1000, -500, 20})), 1.5, 1e-9); }
-
-TEST(Distance, BodiesWithoutLengthHaveNone) {
-  Observation point = moved();
-  point.box = {{1, 1, 1}, {1, 1, 1}};
-  EXPECT_TRUE(std::isnan(distance("", point)));
-  point.centre_after = point.centre_before;
-  EXPECT_TRUE(std::isnan(distance("", point)));
-}
-
-TEST(Distance, IsHonestAboutWhatIsNoNumber) {
-  Observation lost = moved();
+TEST(Distance, IsNoNumberWhereTheBodyHasNoLengthOrAPlaceIsNoNumber) {
+  Observation point = moved(), still = moved(), lost = moved(), exploded = moved();
+  point.box = still.box = {{1, 1, 1}, {1, 1, 1}};
+  still.centre_after = still.centre_before;
   lost.centre_after.x = std::nan("");
-  EXPECT_FALSE(std::isfinite(distance("", lost)));
-  Observation exploded = moved();
   exploded.box.high.y = std::nan("");
-  EXPECT_FALSE(std::isfinite(distance("", exploded)));
+  for (const Observation& seen : {point, still, lost, exploded}) EXPECT_TRUE(std::isnan(distance("", seen)));
 }
 
 TEST(Distance, AsksForItsWindow) {
@@ -60,70 +41,51 @@ TEST(Distance, AsksForItsWindow) {
   EXPECT_EQ(usual.settle, 10);
   EXPECT_EQ(usual.window, 10);
   EXPECT_FALSE(usual.work);
-  const Request paper = make<Fitness>("distance", "settle = 3.0\nwindow = 5.0")->observes();
-  EXPECT_EQ(paper.settle, 3);
-  EXPECT_EQ(paper.window, 5);
-  EXPECT_FALSE(paper.cycle.has_value()) << "after maturing";
-  const Request growing = make<Fitness>("distance", "developing = true\nsettle = 0.5")->observes();
-  EXPECT_EQ(growing.cycle, 0) << "from birth on";
+  EXPECT_FALSE(usual.cycle.has_value()) << "after maturing";
+  const Request growing = make<Fitness>("distance", "developing = true\nsettle = 0.5\nwindow = 5.0")->observes();
   EXPECT_EQ(growing.settle, 0.5);
+  EXPECT_EQ(growing.window, 5);
+  EXPECT_EQ(growing.cycle, 0) << "from birth on";
 }
 
-TEST(Distance, RefusesNoDirection) {
-  const auto fitness = make<Fitness>("distance", "direction = [0, 0, 0]");
-  EXPECT_THAT([&] { fitness->observes(); },
-              ::testing::ThrowsMessage<std::invalid_argument>(::testing::HasSubstr("direction")));
+TEST(AnyFitness, WithADirectionRefusesNone) {
+  for (const char* name : {"distance", "efficiency"})
+    EXPECT_THAT([&] { make<Fitness>(name, "direction = [0, 0, 0]")->observes(); },
+                ::testing::ThrowsMessage<std::invalid_argument>(::testing::HasSubstr("direction")));
 }
 
-TEST(Distance, IsToBeGreat) {
-  const auto objectives = make<Fitness>("distance")->objectives();
-  ASSERT_EQ(objectives.size(), 1u);
-  EXPECT_EQ(objectives[0].name, "distance");
-  EXPECT_EQ(objectives[0].unit, "body lengths");
-  EXPECT_TRUE(objectives[0].maximise);
+TEST(AnyFitness, IsToBeGreatUnlessItIsACost) {
+  for (const auto& [name, unit, is_cost] :
+       {std::tuple{"distance", "body lengths", false}, {"actuation-work", "J", true}}) {
+    const auto objectives = make<Fitness>(name)->objectives();
+    ASSERT_EQ(objectives.size(), 1u);
+    EXPECT_EQ(objectives[0].name, name);
+    EXPECT_EQ(objectives[0].unit, unit);
+    EXPECT_EQ(objectives[0].maximise, !is_cost);
+  }
 }
 
-TEST(ActuationWork, IsTheWorkAndToBeSmall) {
+TEST(ActuationWork, IsTheWork) {
   const auto fitness = make<Fitness>("actuation-work", "settle = 0.0\nwindow = 2.0");
-  const auto objectives = fitness->objectives();
-  ASSERT_EQ(objectives.size(), 1u);
-  EXPECT_EQ(objectives[0].name, "actuation-work");
-  EXPECT_EQ(objectives[0].unit, "J");
-  EXPECT_FALSE(objectives[0].maximise);
   EXPECT_TRUE(fitness->observes().work);
   EXPECT_EQ(fitness->observes().settle, 0);
   EXPECT_EQ(fitness->observes().window, 2);
-  Observation observation = moved();
-  observation.work = 12.5;
-  EXPECT_EQ(fitness->score(observation), std::vector{12.5});
-}
-
-TEST(AnyFitness, JudgesTheSameSecondsByDefault) {
-  const Request distance = make<Fitness>("distance")->observes(), work = make<Fitness>("actuation-work")->observes();
-  EXPECT_EQ(distance.settle, work.settle);
-  EXPECT_EQ(distance.window, work.window);
-}
-
-TEST(AnyFitness, GivesTheSameOnAnyThread) {
-  const auto fitness = make<Fitness>("distance", "direction = [1, 2, 3]");
-  from_eight_threads([&] { return fitness->score(moved()); });
+  EXPECT_EQ(fitness->score(moved(12.5)), std::vector{12.5});
 }
 
 /// A body whose centre of mass is at given places, 0.1 s apart; its box reaches 0.5 m to all sides.
 class Path {
  public:
   Path(const Fitness& fitness, const std::vector<Vec3>& places) {
-    const Request request = fitness.observes();
-    for (const Vec3& place : places) {
-      StoredSample& sample =
-          samples_.emplace_back(StoredSample{.time = 3 + 0.1 * static_cast<double>(samples_.size())});
-      sample.centre = place;
-      sample.box = {place - Vec3{0.5, 0.5, 0.5}, place + Vec3{0.5, 0.5, 0.5}};
+    const Vec3 half{0.5, 0.5, 0.5};
+    for (double time = 3; const Vec3& place : places) {
+      samples_.push_back({.time = time, .centre = place, .box = {place - half, place + half}});
+      time += 0.1;
     }
     std::vector<const StoredSample*> all;
     for (const StoredSample& sample : samples_) all.push_back(&sample);
     seen = {.box = samples_.front().box, .centre_before = places.front(), .centre_after = places.back()};
-    seen.samples = Samples(all, request.channels);
+    seen.samples = Samples(all, fitness.observes().channels);
   }
   Path(const Path&) = delete;
 
@@ -165,17 +127,13 @@ TEST(Straightness, ComparesTheWayWithThePath) {
 
 TEST(Efficiency, IsTheWayForTheWork) {
   const auto score = [](const std::string& toml, double work) {
-    Observation observation = moved();
-    observation.work = work;
-    return make<Fitness>("efficiency", toml)->score(observation).at(0);
+    return make<Fitness>("efficiency", toml)->score(moved(work)).at(0);
   };
   EXPECT_DOUBLE_EQ(score("", 60), 3.0 / 60);
   EXPECT_DOUBLE_EQ(score("direction = [0, -2, 0]", 60), -4.0 / 60);
   EXPECT_DOUBLE_EQ(score("", 1e-9), 3.0 / 10) << "a body at rest gains nothing by resting more";
   EXPECT_DOUBLE_EQ(score("least_work = 0.5", 0), 3.0 / 0.5);
   EXPECT_TRUE(std::isnan(score("", std::nan(""))));
-  EXPECT_THAT([] { make<Fitness>("efficiency", "direction = [0, 0, 0]")->observes(); },
-              ::testing::ThrowsMessage<std::invalid_argument>(::testing::HasSubstr("direction")));
 }
 
 TEST(Descriptor, HasARangeAndTheRoleOfOne) {
@@ -196,17 +154,15 @@ TEST(Descriptor, HasARangeAndTheRoleOfOne) {
 
 TEST(Descriptor, IsTheMeanOverTheWindow) {
   const auto fitness = [](const std::string& what) { return make<Fitness>("descriptor", "what = '" + what + "'"); };
-  const auto mean = [&](const std::string& what, const Vec3& first, const Vec3& second, const Vec3& third) {
+  const auto mean = [&](const std::string& what, const std::vector<Vec3>& sizes) {
     const auto descriptor = fitness(what);
     Path path(*descriptor, {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}});
-    path.sample(0).box = {{1, 1, 1}, Vec3{1, 1, 1} + first};
-    path.sample(1).box = {{1, 1, 1}, Vec3{1, 1, 1} + second};
-    path.sample(2).box = {{1, 1, 1}, Vec3{1, 1, 1} + third};
+    for (std::size_t i = 0; i < 3; ++i) path.sample(i).box = {{1, 1, 1}, Vec3{1, 1, 1} + sizes[i]};
     return descriptor->score(path.seen).at(0);
   };
-  EXPECT_DOUBLE_EQ(mean("height", {3, 2, 9}, {3, 2, 1}, {3, 2, 2}), 1.5);
-  EXPECT_DOUBLE_EQ(mean("spread", {9, 9, 9}, {3, 2, 8}, {4, 2, 7}), 3.5) << "the longer horizontal side";
-  EXPECT_DOUBLE_EQ(mean("spread", {9, 9, 9}, {3, 2, 8}, {1, 4, 7}), 3.5);
+  EXPECT_DOUBLE_EQ(mean("height", {{3, 2, 9}, {3, 2, 1}, {3, 2, 2}}), 1.5);
+  EXPECT_DOUBLE_EQ(mean("spread", {{9, 9, 9}, {3, 2, 8}, {4, 2, 7}}), 3.5) << "the longer horizontal side";
+  EXPECT_DOUBLE_EQ(mean("spread", {{9, 9, 9}, {3, 2, 8}, {1, 4, 7}}), 3.5);
   const auto contact = fitness("contact");
   Path path(*contact, {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}});
   path.sample(1).contact_time = 0.02;  // 0.1 s lie between two samples

@@ -25,7 +25,9 @@ struct Network {
   }
 };
 
-void expect_distance(const Network& network, const Genome& one, const Genome& other, double blocks, double genes) {
+const Network network;
+
+void expect_distance(const Genome& one, const Genome& other, double blocks, double genes) {
   for (const auto& [a, b] : {std::pair(&one, &other), std::pair(&other, &one)}) {
     const GenomeDistance found = genome_distance(*a, *b, network.layout);
     EXPECT_NEAR(found.blocks, blocks, 1e-12);
@@ -34,25 +36,22 @@ void expect_distance(const Network& network, const Genome& one, const Genome& ot
 }
 
 TEST(GenomeDistance, CountsBlocksWithoutCounterpart) {
-  const Network network;
-  expect_distance(network, network.genome({{1, 5}, {2, 5}, {3, 5}}), network.genome({{3, 5}, {4, 5}}), 3 / 5.0, 0);
-  expect_distance(network, network.genome({{1, 5}}), network.genome({{2, 9}}), 1, 0);
-  expect_distance(network, {}, {}, 0, 0);
+  expect_distance(network.genome({{1, 5}, {2, 5}, {3, 5}}), network.genome({{3, 5}, {4, 5}}), 3 / 5.0, 0);
+  expect_distance(network.genome({{1, 5}}), network.genome({{2, 9}}), 1, 0);
+  expect_distance({}, {}, 0, 0);
 }
 
 TEST(GenomeDistance, ComparesGenesByTheirRanges) {
-  const Network network;
-  expect_distance(network, network.genome({{1, 2}, {2, 10}}), network.genome({{2, 0}, {1, 5}}), 0, (0.3 + 1) / 2);
+  expect_distance(network.genome({{1, 2}, {2, 10}}), network.genome({{2, 0}, {1, 5}}), 0, (0.3 + 1) / 2);
 }
 
 TEST(GenomeDistance, ComparesChoicesAndWhatReferencesMean) {
-  const Network network;
   Genome one = network.genome({{1, 0}, {2, 0}}), other = network.genome({{2, 0}, {1, 0}});
   network.add_link(one, 7, 2, 0);    // to node 1
   network.add_link(other, 7, 1, 1);  // to node 1 as well, another choice
-  expect_distance(network, one, other, 0, 1 / 4.0);
+  expect_distance(one, other, 0, 1 / 4.0);
   other[3] = 0;  // to node 2
-  expect_distance(network, one, other, 0, 2 / 4.0);
+  expect_distance(one, other, 0, 2 / 4.0);
 }
 
 TEST(GenomeDistance, OfFixedLayoutsComparesAllGenes) {

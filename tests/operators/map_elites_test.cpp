@@ -1,5 +1,5 @@
 // MAP-Elites with both kinds of cells.
-#include <set>
+#include <ranges>
 
 #include "evodevo/helpers/selection/memory.hpp"
 #include "evodevo/helpers/selection/niches.hpp"
@@ -8,10 +8,8 @@
 namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
-std::vector<Objective> ranges_with(std::uint32_t bins) {
-  return {{"height", "m", true, Role::descriptor, 0, 2, bins}, {"contact", "1", true, Role::descriptor, -1, 1, bins}};
-}
-const std::vector<Objective> ranges = ranges_with(4);
+const std::vector<Objective> ranges = {{"height", "m", true, Role::descriptor, 0, 2, 4},
+                                       {"contact", "1", true, Role::descriptor, -1, 1, 4}};
 
 Table random_table(std::uint64_t seed, std::uint32_t count) {
   Rng rng = stream(seed);
@@ -27,51 +25,53 @@ Table random_table(std::uint64_t seed, std::uint32_t count) {
   return table;
 }
 
+/// Returns the best row of each cell, given the cell of each pair of descriptors.
+template <class CellOf>
+std::map<std::size_t, std::uint32_t> best_rows(const Table& table, const CellOf& cell_of) {
+  std::map<std::size_t, std::uint32_t> best;
+  for (std::uint32_t row = 0; row < table.rows.size(); ++row) {
+    const Individual& one = table.rows[row];
+    if (one.scores.empty()) continue;
+    const auto found = best.emplace(cell_of(one.descriptors[0] / 2, (one.descriptors[1] + 1) / 2), row).first;
+    if (one.scores[0] > table.rows[found->second].scores[0]) found->second = row;
+  }
+  return best;
+}
+
 TEST(MapElites, TheBestOfEachCellOfAGridSurvives) {
   const auto selection = make<Selection>("map-elites", "");
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const Table table = random_table(seed, 60);
     const auto index = [](double share) { return std::min(3, std::max(0, static_cast<int>(std::floor(4 * share)))); };
-    std::map<int, std::uint32_t> best;
-    for (std::uint32_t row = 0; row < 60; ++row) {
-      const Individual& one = table.rows[row];
-      if (one.scores.empty()) continue;
-      const int cell = 4 * index(one.descriptors[0] / 2) + index((one.descriptors[1] + 1) / 2);
-      const auto found = best.emplace(cell, row).first;
-      if (one.scores[0] > table.rows[found->second].scores[0]) found->second = row;
-    }
-    std::set<std::uint32_t> expected;
-    for (const auto& [cell, row] : best) expected.insert(row);
+    const auto best = best_rows(table, [&](double x, double y) { return 4 * index(x) + index(y); });
+    const auto expected = std::views::values(best);
     const Survival survival = table.survive(*selection, 100);
-    EXPECT_EQ(std::set(survival.rows.begin(), survival.rows.end()), expected);
-    EXPECT_EQ(survival.rows.size(), expected.size());
+    EXPECT_THAT(survival.rows, ::testing::UnorderedElementsAreArray(expected.begin(), expected.end()));
     EXPECT_TRUE(survival.memory.empty());
-    EXPECT_EQ(survival.notes.size(),
-              static_cast<std::size_t>(std::count_if(table.rows.begin(), table.rows.end(),
-                                                     [](const Individual& one) { return !one.scores.empty(); })));
+    const auto ok = std::ranges::count_if(table.rows, [](const Individual& one) { return !one.scores.empty(); });
+    EXPECT_EQ(std::ssize(survival.notes), ok);
     for (const Note& note : survival.notes)
-      EXPECT_EQ(best.at(static_cast<int>(note.value)) == note.row, expected.contains(note.row));
+      EXPECT_EQ(best.at(static_cast<std::size_t>(note.value)) == note.row, std::ranges::count(expected, note.row) == 1);
   }
 }
 
-TEST(MapElites, AMemoryOfImpossiblePlacesIsRefused) {
+TEST(MapElites, AMemoryThatIsNotItsOwnIsRefused) {
   const auto selection = make<Selection>("map-elites", "cells = \"centroidal\"\ncount = 12");
   Table table = random_table(1, 8);
-  const auto is_refused = [&](const std::vector<Coordinates>& centres) {
+  const auto survive_with = [&](const std::vector<Coordinates>& centres) {
     MemoryWriter writer;
     writer.write(centres);
     table.memory = writer.bytes();
-    try {
-      table.survive(*selection, 8);
-      return false;
-    } catch (const std::runtime_error&) {
-      return true;
-    }
+    table.survive(*selection, 8);
   };
-  EXPECT_FALSE(is_refused({{0.5, 0.5}, {0.2, 0.1}}));
-  EXPECT_TRUE(is_refused({}));
-  EXPECT_TRUE(is_refused({{0.5, 0.5}, {0.2}}));
-  EXPECT_TRUE(is_refused({{0.5, 1e200}})) << "its distances are not finite";
+  const std::vector<Coordinates> two = {{0.5, 0.5}, {0.2, 0.1}};
+  EXPECT_NO_THROW(survive_with(two));
+  EXPECT_THROW(survive_with({}), std::runtime_error);
+  EXPECT_THROW(survive_with({{0.5, 0.5}, {0.2}}), std::runtime_error);
+  EXPECT_THROW(survive_with({{0.5, 1e200}}), std::runtime_error) << "its distances are not finite";
+  table.descriptors.pop_back();
+  EXPECT_THAT([&] { survive_with(two); },
+              ::testing::ThrowsMessage<std::runtime_error>(::testing::HasSubstr("1 descriptors")));
 }
 
 TEST(MapElites, TheBestOfTheCellWithTheNearestCentreSurvives) {
@@ -81,22 +81,12 @@ TEST(MapElites, TheBestOfTheCellWithTheNearestCentreSurvives) {
   MemoryReader reader(first.memory);
   const auto centres = reader.read_lists<double>();
   ASSERT_EQ(centres.size(), 12u);
-
-  std::map<std::size_t, std::uint32_t> best;
-  for (std::uint32_t row = 0; row < 80; ++row) {
-    const Individual& one = table.rows[row];
-    if (one.scores.empty()) continue;
-    const double x = one.descriptors[0] / 2, y = (one.descriptors[1] + 1) / 2;
-    std::size_t nearest = 0;
-    const auto squared = [&](const Coordinates& c) { return (c[0] - x) * (c[0] - x) + (c[1] - y) * (c[1] - y); };
-    for (std::size_t i = 1; i < centres.size(); ++i)
-      if (squared(centres[i]) < squared(centres[nearest])) nearest = i;
-    const auto found = best.emplace(nearest, row).first;
-    if (one.scores[0] > table.rows[found->second].scores[0]) found->second = row;
-  }
-  std::set<std::uint32_t> expected;
-  for (const auto& [cell, row] : best) expected.insert(row);
-  EXPECT_EQ(std::set(first.rows.begin(), first.rows.end()), expected);
+  const auto best = best_rows(table, [&](double x, double y) {
+    const auto distance = [&](const Coordinates& centre) { return std::hypot(centre[0] - x, centre[1] - y); };
+    return static_cast<std::size_t>(std::ranges::min_element(centres, {}, distance) - centres.begin());
+  });
+  const auto expected = std::views::values(best);
+  EXPECT_THAT(first.rows, ::testing::UnorderedElementsAreArray(expected.begin(), expected.end()));
 
   const auto other = make<Selection>("map-elites", "cells = \"centroidal\"\ncount = 12");
   EXPECT_EQ(table.survive(*other, 100, 2).memory, first.memory) << "the cells are the same in all runs";
@@ -106,7 +96,7 @@ TEST(MapElites, TheBestOfTheCellWithTheNearestCentreSurvives) {
   EXPECT_EQ(second.rows, first.rows);
 }
 
-TEST(MapElites, TheWorstElitesDieIfThereAreTooFewPlaces) {
+TEST(MapElites, AllBreedAlikeButTheWorstElitesDieIfThereAreTooFewPlaces) {
   const auto selection = make<Selection>("map-elites", "");
   const Table table{.rows = {{.scores = {1}, .descriptors = {0.1, 0}},
                              {.scores = {9}, .descriptors = {1.9, 0}},
@@ -114,9 +104,12 @@ TEST(MapElites, TheWorstElitesDieIfThereAreTooFewPlaces) {
                              {.scores = {5}, .descriptors = {0.6, 0}}},
                     .descriptors = ranges};
   EXPECT_THAT(table.survive(*selection, 2).rows, ::testing::ElementsAre(1, 3));
+  std::vector<int> times(4, 0);
+  for (const auto& [parent, mate] : table.couples(*selection, 4000)) ++times.at(parent);
+  for (const int count : times) EXPECT_NEAR(count, 1000, 140);  // five standard deviations
 }
 
-TEST(MapElites, WhatLiesFarOutsideBelongsToTheNearestCell) {
+TEST(MapElites, WhatLiesFarOutsideBelongsToTheNearestCellAndTheFailedLiveWhereAllFailed) {
   for (const char* cells : {"grid", "centroidal"}) {
     const auto selection = make<Selection>("map-elites", std::string("cells = \"") + cells + "\"\ncount = 30");
     const Table table{.rows = {{.scores = {1}, .descriptors = {2000, 0.1}, .id = 0},
@@ -125,45 +118,8 @@ TEST(MapElites, WhatLiesFarOutsideBelongsToTheNearestCell) {
                                {.scores = {4}, .descriptors = {-1.7e308, 0.1}, .id = 3}},
                       .descriptors = ranges};
     EXPECT_THAT(table.survive(*selection, 4).rows, ::testing::ElementsAre(3, 2)) << cells;
-  }
-}
-
-TEST(MapElites, AMemoryThatIsNotItsOwnIsRefused) {
-  const auto selection = make<Selection>("map-elites", "cells = \"centroidal\"\ncount = 5");
-  Table table = random_table(1, 20);
-  table.memory = table.survive(*selection, 5).memory;
-  table.descriptors.pop_back();
-  EXPECT_THAT([&] { table.survive(*selection, 5); },
-              ::testing::ThrowsMessage<std::runtime_error>(::testing::HasSubstr("1 descriptors")));
-}
-
-TEST(MapElites, LifeGoesOnWhereAllFailed) {
-  for (const char* cells : {"grid", "centroidal"}) {
-    const auto selection = make<Selection>("map-elites", std::string("cells = \"") + cells + "\"\ncount = 5");
-    const Table table{.rows = {{}, {}, {}}, .descriptors = ranges};
-    EXPECT_THAT(table.survive(*selection, 2).rows, ::testing::SizeIs(2));
-  }
-}
-
-/// Every cell can be reached, and the best score in it is known: that of the corner nearest to the middle.
-TEST(MapElites, FillsTheMapWithItsBest) {
-  const auto selection = make<Selection>("map-elites", "");
-  Evolution evolution(
-      *selection, real_genes(2, -1, 1),
-      [](Individual& one) {
-        const double x = one.genome[0], y = one.genome[1];
-        one.descriptors = {x + 1, y};
-        one.scores = {-x * x - y * y};
-      },
-      1);
-  evolution.table.descriptors = ranges_with(5);
-  evolution.run(200, 100, 40);
-  ASSERT_EQ(evolution.table.rows.size(), 25u);
-  for (const Individual& one : evolution.table.rows) {
-    const auto cell = static_cast<int>(one.notes.at("cell"));
-    const auto nearest = [](int bin) { return std::max(0.0, std::abs(bin - 2) * 0.4 - 0.2); };
-    const double best = -std::pow(nearest(cell / 5), 2) - std::pow(nearest(cell % 5), 2);
-    EXPECT_NEAR(one.scores[0], best, 0.05) << cell;
+    const Table failed{.rows = {{}, {}, {}}, .descriptors = ranges};
+    EXPECT_THAT(failed.survive(*selection, 2).rows, ::testing::SizeIs(2)) << cells;
   }
 }
 

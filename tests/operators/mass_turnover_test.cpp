@@ -1,7 +1,14 @@
+// How masses come and go: mass-turnover and mass-growth.
 #include "life.hpp"
 
 namespace evodevo::test::EVODEVO_FILE {
 namespace {
+
+using ::testing::Each;
+using ::testing::ElementsAre;
+using ::testing::Field;
+using ::testing::SizeIs;
+using ::testing::UnorderedElementsAre;
 
 constexpr std::uint32_t masses = 100;
 
@@ -15,46 +22,42 @@ Life ring(bool with_materials = true) {
   return life;
 }
 
-bool within(const Vec3& position, const Box& box) {
-  return position.x >= box.low.x && position.y >= box.low.y && position.z >= box.low.z && position.x <= box.high.x &&
-         position.y <= box.high.y && position.z <= box.high.z;
-}
-
 TEST(MassTurnover, MassesOfFewSpringsGo) {
   const auto devo = make<Devo>("mass-turnover");
   const Life life = ring();
   const Edits edits = develop(*devo, life, 1);
   // neighbours of removed masses fall below the threshold too, but degrees were compared before the removal
-  EXPECT_THAT(edits.removed_masses, ::testing::UnorderedElementsAre(0, 1, 2, 3));
+  EXPECT_THAT(edits.removed_masses, UnorderedElementsAre(0, 1, 2, 3));
   EXPECT_EQ(edits.removed_masses[0], 0u) << "fewest springs first";
-  EXPECT_EQ(edits.new_masses.size(), 4u);
+  EXPECT_THAT(edits.causes.removed_masses, ElementsAre(17, 19, 19, 19));
+  const Measure measure = devo->measure(&Causes::removed_masses);
+  EXPECT_EQ(measure.name, "degree");
+  EXPECT_EQ(measure.unit, "springs");
+  EXPECT_THAT(edits.new_masses, SizeIs(4));
   EXPECT_TRUE(edits.removed_springs.empty());
   EXPECT_EQ(after(life, edits).body.masses.size(), masses);
 }
 
-TEST(MassTurnover, TheNumberOfItsSpringsIsWhyAMassGoes) {
-  const auto devo = make<Devo>("mass-turnover");
+TEST(MassTurnover, ContactsThroughAirCount) {
   Life life = ring();
   life.living.body.masses[0].air_contacts = 1;
-  const Edits edits = develop(*devo, life, 1);
-  ASSERT_EQ(edits.removed_masses.size(), 4u);
-  EXPECT_THAT(edits.causes.removed_masses, ::testing::ElementsAre(18, 19, 19, 19)) << "with contacts through air";
-  const Measure measure = devo->measure(&Causes::removed_masses);
-  EXPECT_EQ(measure.name, "degree");
-  EXPECT_EQ(measure.unit, "springs");
+  life.living.body.masses[2].air_contacts = 1;
+  const Edits edits = develop(*make<Devo>("mass-turnover"), life, 1);
+  EXPECT_THAT(edits.removed_masses, UnorderedElementsAre(0, 1, 3));
+  EXPECT_THAT(edits.causes.removed_masses, ElementsAre(18, 19, 19));
 }
 
 TEST(MassTurnover, ThresholdIsTheFewestSpringsThatStay) {
-  const Life life = ring();
-  EXPECT_TRUE(digest(develop(*make<Devo>("mass-turnover", "threshold = 17"), life, 1)).empty());
-  EXPECT_THAT(develop(*make<Devo>("mass-turnover", "threshold = 18"), life, 1).removed_masses,
-              ::testing::ElementsAre(0));
-  EXPECT_EQ(develop(*make<Devo>("mass-turnover", "threshold = 21"), life, 1).removed_masses.size(), 10u);
+  const auto gone = [](const std::string& toml) { return develop(*make<Devo>("mass-turnover", toml), ring(), 1); };
+  EXPECT_TRUE(gone("threshold = 17").empty());
+  EXPECT_THAT(gone("threshold = 18").removed_masses, ElementsAre(0));
+  EXPECT_THAT(gone("threshold = 21").removed_masses, SizeIs(10));
 }
 
 TEST(MassTurnover, LimitTakesTheFewestSpringsFirstAndTiesAtRandom) {
-  const auto devo = make<Devo>("mass-turnover", "limit = 2");
   const Life life = ring();
+  EXPECT_TRUE(develop(*make<Devo>("mass-turnover", "limit = 0"), life, 1).empty());
+  const auto devo = make<Devo>("mass-turnover", "limit = 2");
   std::vector<int> second(masses, 0);
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     const auto gone = develop(*devo, life, seed).removed_masses;
@@ -63,14 +66,6 @@ TEST(MassTurnover, LimitTakesTheFewestSpringsFirstAndTiesAtRandom) {
     ++second[gone[1]];
   }
   for (const std::uint32_t mass : {1, 2, 3}) EXPECT_NEAR(second[mass], 100, 45);
-  EXPECT_TRUE(digest(develop(*make<Devo>("mass-turnover", "limit = 0"), life, 1)).empty());
-}
-
-TEST(MassTurnover, ContactsThroughAirCount) {
-  Life life = ring();
-  life.living.body.masses[0].air_contacts = 3;
-  life.living.body.masses[2].air_contacts = 1;
-  EXPECT_THAT(develop(*make<Devo>("mass-turnover"), life, 1).removed_masses, ::testing::UnorderedElementsAre(1, 3));
 }
 
 TEST(MassTurnover, NewMassesLieInBoundsAndApart) {
@@ -83,11 +78,11 @@ TEST(MassTurnover, NewMassesLieInBoundsAndApart) {
       const Edits edits = develop(*devo, life, seed);
       ASSERT_FALSE(edits.new_masses.empty());
       std::vector<Vec3> positions;
-      const std::set<std::uint32_t> gone(edits.removed_masses.begin(), edits.removed_masses.end());
       for (std::uint32_t i = 0; i < masses; ++i)
-        if (!gone.contains(i)) positions.push_back(context.position(i));
+        if (std::ranges::count(edits.removed_masses, i) == 0) positions.push_back(context.position(i));
       for (const NewMass& mass : edits.new_masses) {
-        EXPECT_TRUE(within(mass.position, life.bounds));
+        const auto& [x, y, z] = mass.position;  // the bounds are (-2, -2, 0) to (2, 2, 2)
+        EXPECT_TRUE(std::abs(x) <= 2 && std::abs(y) <= 2 && std::abs(z - 1) <= 1);
         EXPECT_EQ(mass.mass, 0.35);
         for (const Vec3& other : positions) EXPECT_GE(norm(mass.position - other), 0.25);
         positions.push_back(mass.position);
@@ -100,46 +95,48 @@ TEST(MassTurnover, PlacesFillTheBounds) {
   const auto devo = make<Devo>("mass-turnover");
   Life life = ring();
   life.bounds = {{10, 20, 30}, {11, 22, 33}};
-  Vec3 low = life.bounds.high, high = life.bounds.low;
+  std::vector<Vec3> places;
   for (std::uint64_t seed = 0; seed < 100; ++seed)
-    for (const NewMass& mass : develop(*devo, life, seed).new_masses) {
-      low = {std::min(low.x, mass.position.x), std::min(low.y, mass.position.y), std::min(low.z, mass.position.z)};
-      high = {std::max(high.x, mass.position.x), std::max(high.y, mass.position.y), std::max(high.z, mass.position.z)};
-    }
-  EXPECT_LT(norm(low - life.bounds.low), 0.15);
-  EXPECT_LT(norm(high - life.bounds.high), 0.15);
+    for (const NewMass& mass : develop(*devo, life, seed).new_masses) places.push_back(mass.position);
+  const Box box = bounding_box(places);
+  EXPECT_LT(norm(box.low - life.bounds.low), 0.15);
+  EXPECT_LT(norm(box.high - life.bounds.high), 0.15);
 }
 
 TEST(MassTurnover, WithoutAFreePlaceTheMassStays) {
   const Life life = ring();
-  EXPECT_TRUE(digest(develop(*make<Devo>("mass-turnover", "min_distance = 50.0"), life, 1)).empty());
+  EXPECT_TRUE(develop(*make<Devo>("mass-turnover", "min_distance = 50.0"), life, 1).empty());
 
   // there is room for one new mass: the diagonal of the box is shorter than the minimum distance
   Life narrow = life;
   narrow.bounds = {{10, 10, 10}, {11, 11, 11}};
   const Edits edits = develop(*make<Devo>("mass-turnover", "min_distance = 2.0\nsprings = 1000"), narrow, 1);
-  EXPECT_THAT(edits.removed_masses, ::testing::ElementsAre(0));
+  EXPECT_THAT(edits.removed_masses, ElementsAre(0));
   EXPECT_EQ(edits.new_masses.size(), 1u);
   EXPECT_EQ(edits.new_springs.size(), masses - 1) << "those that were to go but stay are partners too";
 }
 
 TEST(MassTurnover, OnlyMassesThatStayTakeUpRoom) {
   const auto devo = make<Devo>("mass-turnover", "threshold = 18\nmin_distance = 0.01");
-  Life life = ring();
-  const Vec3 place_of_the_gone = life.living.state.position[0], place_of_another = life.living.state.position[50];
-  life.bounds = {place_of_the_gone, place_of_the_gone};
-  EXPECT_THAT(develop(*devo, life, 1).removed_masses, ::testing::ElementsAre(0));
-  life.bounds = {place_of_another, place_of_another};
-  EXPECT_TRUE(develop(*devo, life, 1).removed_masses.empty());
+  const auto gone = [&](std::size_t at) {
+    Life life = ring();
+    life.bounds = {life.living.state.position[at], life.living.state.position[at]};
+    return develop(*devo, life, 1).removed_masses;
+  };
+  EXPECT_THAT(gone(0), ElementsAre(0)) << "at the place of the one that goes";
+  EXPECT_TRUE(gone(50).empty());
 }
 
-TEST(MassTurnover, NewMassesAreJoinedToDifferentMassesThatStay) {
+TEST(MassTurnover, NewMassesAreJoinedToDifferentMassesThatStayByTheMeanOfTheirMaterialsWithoutAir) {
   const auto devo = make<Devo>("mass-turnover");
   const Life life = ring();
+  const auto materials = context().materials;
   std::set<std::uint32_t> partners_of_all;
-  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+  std::set<std::int32_t> seen;
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
     const Edits edits = develop(*devo, life, seed);
-    EXPECT_EQ(edits.new_springs.size(), 4u * 25);
+    for (const NewMass& mass : edits.new_masses) seen.insert(mass.material);
+    EXPECT_THAT(edits.new_springs, SizeIs(4 * 25));
     std::vector<std::set<std::uint32_t>> partners(4);
     for (const NewSpring& spring : edits.new_springs) {
       const auto [old, fresh] = ordered(spring.a, spring.b);
@@ -148,11 +145,14 @@ TEST(MassTurnover, NewMassesAreJoinedToDifferentMassesThatStay) {
       ASSERT_LT(old, masses);
       partners.at(fresh - masses).insert(old);
       partners_of_all.insert(old);
+      EXPECT_EQ(spring.material, mean(materials[life.living.body.masses[old].material],
+                                      materials[edits.new_masses[fresh - masses].material]));
+      EXPECT_FALSE(spring.rest_length) << "it is born without force";
     }
-    for (const auto& own : partners) EXPECT_EQ(own.size(), 25u);
-    after(life, edits);  // throws if the host would refuse the edits
+    EXPECT_THAT(partners, Each(SizeIs(25)));
   }
   EXPECT_EQ(partners_of_all.size(), masses - 4);
+  EXPECT_THAT(seen, ElementsAre(bone, muscle, muscle2, tissue));
 }
 
 TEST(MassTurnover, NewMassesAreJoinedToTheNearestThatStay) {
@@ -173,36 +173,7 @@ TEST(MassTurnover, NewMassesAreJoinedToTheNearestThatStay) {
         EXPECT_EQ(ordered(edits.new_springs[7 * m + s].a, edits.new_springs[7 * m + s].b),
                   Pair(order[s].second, masses + m));
     }
-    after(life, edits);  // throws if the host would refuse the edits
   }
-}
-
-TEST(MassTurnover, NewSpringsAreBornWithoutForce) {
-  const Life life = ring();
-  const LivingBody grown = after(life, develop(*make<Devo>("mass-turnover"), life, 1));
-  ASSERT_GE(grown.body.springs.size(), 100u);
-  for (std::size_t s = grown.body.springs.size() - 100; s < grown.body.springs.size(); ++s) {
-    const Spring& spring = grown.body.springs[s];
-    EXPECT_NEAR(spring.rest_length * grown.body.materials[spring.material].relative_length(life.time),
-                norm(grown.state.position[spring.a] - grown.state.position[spring.b]), 1e-12);
-  }
-}
-
-TEST(MassTurnover, MaterialsAreThoseOfTheBodyButNotAir) {
-  const auto devo = make<Devo>("mass-turnover");
-  const Life life = ring();
-  const auto materials = context().materials;
-  std::set<std::int32_t> seen;
-  for (std::uint64_t seed = 0; seed < 50; ++seed) {
-    const Edits edits = develop(*devo, life, seed);
-    for (const NewMass& mass : edits.new_masses) seen.insert(mass.material);
-    for (const NewSpring& spring : edits.new_springs) {
-      const auto [old, fresh] = ordered(spring.a, spring.b);
-      EXPECT_EQ(spring.material, mean(materials[life.living.body.masses[old].material],
-                                      materials[edits.new_masses[fresh - masses].material]));
-    }
-  }
-  EXPECT_THAT(seen, ::testing::ElementsAre(bone, muscle, muscle2, tissue));
 }
 
 TEST(MassTurnover, WithoutMaterialsOfMassesSpringsTakeThoseOfOthers) {
@@ -221,24 +192,76 @@ TEST(MassTurnover, HalfOfASmallBodyStays) {
   for (std::uint32_t a = 0; a < 7; ++a)
     for (std::uint32_t b = a + 1; b < 7; ++b) life.add_spring(a, b, bone, 1);
   const Edits edits = develop(*devo, life, 1);
-  EXPECT_EQ(edits.removed_masses.size(), 3u);
-  EXPECT_EQ(edits.new_masses.size(), 3u);
-  EXPECT_EQ(edits.new_springs.size(), 3u * 4);  // fewer than 25, since there are no other masses
+  EXPECT_THAT(edits.removed_masses, SizeIs(3));
+  EXPECT_THAT(edits.new_masses, SizeIs(3));
+  EXPECT_THAT(edits.new_springs, SizeIs(3 * 4)) << "fewer than 25, since there are no other masses";
   EXPECT_EQ(after(life, edits).body.springs.size(), 6u + 12);
 }
 
-TEST(MassTurnover, DegenerateBodiesStayAsTheyAre) {
-  const auto devo = make<Devo>("mass-turnover");
-  EXPECT_TRUE(digest(develop(*devo, Life{}, 1)).empty());
-  EXPECT_TRUE(digest(develop(*devo, life_of_masses(1), 1)).empty());
-  EXPECT_TRUE(digest(develop(*devo, life_of_masses(5), 1)).empty());
+// mass-growth --------------------------------------------------------------------------------------------------------
+
+TEST(MassGrowth, MassesComeAndNoneGoes) {
+  const auto devo = make<Devo>("mass-growth", "masses = 7\nsprings = 3");
+  const Life life = two_chains();
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const Edits edits = develop(*devo, life, seed);
+    EXPECT_THAT(edits.new_masses, ::testing::AllOf(SizeIs(7), Each(Field(&NewMass::mass, 0.35))));
+    const Body grown = after(life, edits).body;
+    EXPECT_EQ(grown.masses.size(), 6u + 7);
+    EXPECT_EQ(grown.springs.size(), 4u + 7 * 3);
+  }
 }
 
-TEST(MassTurnover, DependsOnItsKeyAlone) {
-  const auto devo = make<Devo>("mass-turnover");
-  const Life life = ring();
-  const auto edits = from_eight_threads([&] { return digest(develop(*devo, life, 1)); });
-  EXPECT_NE(edits, digest(develop(*devo, life, 2)));
+TEST(MassGrowth, EndsAtTheLimit) {
+  Life life = two_chains();
+  const auto devo = make<Devo>("mass-growth", "masses = 5\nlimit = 13\nsprings = 2");
+  std::vector<std::size_t> sizes;
+  for (std::uint64_t application = 0; application < 4; ++application) {
+    life.living = after(life, develop(*devo, life, application));
+    sizes.push_back(life.living.body.masses.size());
+  }
+  EXPECT_THAT(sizes, ElementsAre(11, 13, 13, 13));
+  EXPECT_TRUE(develop(*make<Devo>("mass-growth", "limit = 3"), life, 1).empty()) << "nor does any go";
+}
+
+TEST(MassGrowth, MassesComeAnywhereOnASpring) {
+  const auto devo = make<Devo>("mass-growth", "masses = 1\nsprings = 1\nwhere = 'by-stress'\nmin_distance = 0.0");
+  const Life life = two_chains();
+  const auto& positions = life.living.state.position;
+  std::vector<int> along(4, 0);
+  for (std::uint64_t seed = 0; seed < 1000; ++seed) {
+    const Edits edits = develop(*devo, life, seed);
+    ASSERT_EQ(edits.new_masses.size(), 1u);
+    const Vec3 position = edits.new_masses[0].position;
+    EXPECT_TRUE(std::ranges::any_of(life.living.body.springs, [&](const Spring& spring) {
+      const Vec3 a = positions[spring.a], b = positions[spring.b];
+      return norm(position - a) + norm(position - b) < norm(b - a) + 1e-12;
+    }));
+    ++along.at(static_cast<std::size_t>(4 * (position.y - std::floor(position.y))));
+  }
+  for (const int quarter : along) EXPECT_NEAR(quarter, 250, 70);  // five standard deviations
+}
+
+TEST(MassGrowth, NoMassComesBelowTheFloorOrTooNear) {
+  const auto devo = make<Devo>("mass-growth", "masses = 1000\nsprings = 1\nwhere = 'by-stress'\nmin_distance = 0.3");
+  Life life = two_chains();
+  for (Vec3& position : life.living.state.position) position.z = -0.001;  // sunk into the floor
+  const Edits edits = develop(*devo, life, 1);
+  ASSERT_FALSE(edits.new_masses.empty());
+  EXPECT_LT(edits.new_masses.size(), 20u) << "four springs of 1 m have no more room";
+  std::vector<Vec3> positions = life.living.state.position;
+  for (const NewMass& mass : edits.new_masses) {
+    EXPECT_GE(mass.position.z, 0);
+    for (const Vec3& other : positions) EXPECT_GE(norm(mass.position - other), 0.3);
+    positions.push_back(mass.position);
+  }
+}
+
+TEST(MassGrowth, NothingIsJoinedToAir) {
+  Life airy = life_of_masses(2);
+  airy.living.body.masses[0].material = airy.living.body.masses[1].material = air;
+  airy.add_spring(0, 1, bone, 1);
+  EXPECT_TRUE(develop(*make<Devo>("mass-growth"), airy, 1).empty());
 }
 
 }  // namespace

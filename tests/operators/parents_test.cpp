@@ -10,6 +10,7 @@ TEST(Tournament, TheBestOfSomeDrawsIsAParent) {
   Table table;
   for (std::uint32_t i = 0; i < 10; ++i) table.rows.push_back({.scores = {10.0 - i}, .id = i});
   const auto selection = make<Selection>("tournament", "size = 3");
+  EXPECT_FALSE(selection->traits().chooses_survivors);
   std::vector<double> share(10, 0);
   for (const auto& [parent, mate] : table.couples(*selection, 20000)) {
     EXPECT_NE(parent, mate);
@@ -18,11 +19,6 @@ TEST(Tournament, TheBestOfSomeDrawsIsAParent) {
   // all three draws are at least i in (10 - i)^3 of 1000 cases
   for (int i = 0; i < 10; ++i)
     EXPECT_NEAR(share[static_cast<std::size_t>(i)], std::pow(10 - i, 3) - std::pow(9 - i, 3), 15) << i;
-}
-
-TEST(Tournament, ChoosesParentsAlone) {
-  EXPECT_FALSE(make<Selection>("tournament")->traits().chooses_survivors);
-  EXPECT_TRUE(make<Selection>("tournament")->traits().chooses_parents);
 }
 
 TEST(LexicaseParents, AreSpecialistsAndSoAreTheirMates) {
@@ -45,11 +41,8 @@ TEST(LexicaseParents, AreSpecialistsAndSoAreTheirMates) {
 
 TEST(LexicaseParents, ToleranceIsTheMedianDeviationUnlessSet) {
   // the deviations from the median 9 are 0, 1, 1, 2 and 9, so that scores from 10 are as good as 11
-  const Table table{.rows = {{.scores = {1}, .cases = {9}},
-                             {.scores = {1}, .cases = {10}},
-                             {.scores = {1}, .cases = {8}},
-                             {.scores = {1}, .cases = {11}},
-                             {.scores = {1}, .cases = {0}}}};
+  Table table;
+  for (const double score : {9, 10, 8, 11, 0}) table.rows.push_back({.scores = {1}, .cases = {score}});
   const auto parents_with = [&](const std::string& parameters) {
     std::set<std::uint32_t> parents;
     const auto selection = make<Selection>("lexicase", parameters);
@@ -83,24 +76,6 @@ TEST(Comma, TheBestNewbornsSurvive) {
   EXPECT_THAT(table.survive(*selection, 4).rows, ::testing::UnorderedElementsAre(3, 4, 2, 0))
       << "a place is left, which the best of the old takes before a newborn that failed";
   EXPECT_THAT(table.survive(*selection, 10).rows, ::testing::SizeIs(6));
-}
-
-TEST(Comma, LeavesNobodyAliveForTwoGenerations) {
-  const auto selection = make<Selection>("comma");
-  Evolution evolution(
-      *selection, real_genes(5, -5, 5),
-      [](Individual& one) {
-        one.scores = {0};
-        for (const float x : one.genome) one.scores[0] -= double{x} * x;
-      },
-      1);
-  for (int i = 0; i < 60; ++i) {
-    std::set<std::uint32_t> before;
-    for (const Individual& one : evolution.table.rows) before.insert(one.id);
-    evolution.step(10, 70);
-    for (const Individual& one : evolution.table.rows) EXPECT_FALSE(before.contains(one.id));
-  }
-  EXPECT_GT(evolution.best(), -0.05);
 }
 
 }  // namespace

@@ -22,27 +22,32 @@ std::map<double, std::set<std::uint32_t>> species_in(const Survival& survival) {
   return species;
 }
 
-std::set<std::set<std::uint32_t>> groups(const Survival& survival) {
-  std::set<std::set<std::uint32_t>> result;
-  for (const auto& [number, rows] : species_in(survival)) result.insert(rows);
+using Groups = std::set<std::set<std::uint32_t>>;
+
+/// Returns the species into which an operator with these parameters divides a table.
+Groups groups(const Table& table, const std::string& toml) {
+  Groups result;
+  const auto population = static_cast<std::uint32_t>(table.rows.size());
+  for (const auto& [number, rows] : species_in(table.survive(*make<Selection>("species", toml), population)))
+    result.insert(rows);
   return result;
 }
 
-using Groups = std::set<std::set<std::uint32_t>>;
+/// Returns how often each row is a parent, relative to all draws.
+std::vector<double> shares(const Selection& selection, const Table& table, std::uint32_t draws = 20000) {
+  std::vector<double> share(table.rows.size(), 0);
+  for (const auto& [parent, mate] : table.couples(selection, draws)) share[parent] += 1.0 / draws;
+  return share;
+}
 
 TEST(Species, AreGroupsOfSimilarGenomes) {
   const Table table = with_genes({{0.1f, 5}, {0.9f, 4}, {0.15f, 3}, {0.85f, 2}, {0.5f, 1}});
-  EXPECT_EQ(groups(table.survive(*make<Selection>("species", "threshold = 0.1"), 5)), (Groups{{0, 2}, {1, 3}, {4}}));
-  EXPECT_EQ(groups(table.survive(*make<Selection>("species", "threshold = 1"), 5)), (Groups{{0, 1, 2, 3, 4}}));
-  EXPECT_EQ(groups(table.survive(*make<Selection>("species", "threshold = 0"), 5)).size(), 5u);
-  EXPECT_EQ(groups(table.survive(*make<Selection>("species", "threshold = 0.1\ngene_weight = 0"), 5)).size(), 1u)
-      << "differences between genes do not count";
-}
-
-TEST(Species, TakeTheNearestRepresentative) {
+  EXPECT_EQ(groups(table, "threshold = 0.1"), (Groups{{0, 2}, {1, 3}, {4}}));
+  EXPECT_EQ(groups(table, "threshold = 1"), (Groups{{0, 1, 2, 3, 4}}));
+  EXPECT_EQ(groups(table, "threshold = 0").size(), 5u);
+  EXPECT_EQ(groups(table, "threshold = 0.1\ngene_weight = 0").size(), 1u) << "differences between genes do not count";
   // the best members are at 0.2 and 0.5; 0.36 is similar enough to both, and nearer to the second
-  const Table table = with_genes({{0.2f, 9}, {0.5f, 8}, {0.36f, 1}});
-  EXPECT_EQ(groups(table.survive(*make<Selection>("species", "threshold = 0.2"), 3)), (Groups{{0}, {1, 2}}));
+  EXPECT_EQ(groups(with_genes({{0.2f, 9}, {0.5f, 8}, {0.36f, 1}}), "threshold = 0.2"), (Groups{{0}, {1, 2}}));
 }
 
 TEST(Species, DifferByBlocksWithoutCounterpart) {
@@ -56,7 +61,7 @@ TEST(Species, DifferByBlocksWithoutCounterpart) {
   table.rows = {{.scores = {3}, .genome = genome({1, 2, 3, 4}), .id = 0},
                 {.scores = {2}, .genome = genome({1, 2, 3, 5}), .id = 1},   // 2 of 8 have none
                 {.scores = {1}, .genome = genome({1, 6, 7, 8}), .id = 2}};  // 6 of 8
-  EXPECT_EQ(groups(table.survive(*make<Selection>("species", "threshold = 0.3"), 3)), (Groups{{0, 1}, {2}}));
+  EXPECT_EQ(groups(table, "threshold = 0.3"), (Groups{{0, 1}, {2}}));
 }
 
 TEST(Species, KeepTheirNumbersThroughGenerations) {
@@ -85,20 +90,6 @@ TEST(Species, KeepTheirNumbersThroughGenerations) {
   table.rows.push_back({.scores = {1}, .genome = {0.5f}, .id = 13, .is_newborn = true});
   table.keep(*selection, table.survive(*selection, 5));
   EXPECT_GT(table.rows.back().notes["species"], founded);
-}
-
-TEST(Species, DoNotTakeOver) {
-  // eight good rows of one species, and two worse ones of another
-  std::vector<std::pair<float, double>> rows;
-  for (int i = 0; i < 8; ++i) rows.emplace_back(0.1f + 0.001f * static_cast<float>(i), 20 - i);
-  rows.emplace_back(0.9f, 9);
-  rows.emplace_back(0.91f, 0);
-  const Table table = with_genes(rows);
-  const auto living = table.survive(*make<Selection>("species"), 6).rows;
-  // the worths of the first species are 20, 19/2, 18/3, 17/4, 16/5, ..., and those of the second 9 and 0
-  EXPECT_THAT(living, ::testing::ElementsAre(0, 1, 8, 2, 3, 4));
-  EXPECT_THAT(table.survive(*make<Selection>("species", "threshold = 10"), 6).rows,
-              ::testing::ElementsAre(0, 1, 2, 3, 4, 5));
 }
 
 /// Those who survive are chosen one by one, each for the greatest share that is left.
@@ -139,33 +130,30 @@ TEST(Species, ParentsShareTheFitnessOfTheirSpecies) {
   const auto selection = make<Selection>("species");
   Table table = with_genes({{0.1f, 5}, {0.11f, 4}, {0.12f, 3}, {0.9f, 2}, {0.91f, 1}});
   table.keep(*selection, table.survive(*selection, 5));
-  std::vector<double> share(5, 0);
-  const double draws = 40000;
-  for (const auto& [parent, mate] : table.couples(*selection, static_cast<std::uint32_t>(draws))) {
-    share[parent] += 1 / draws;
+  for (const auto& [parent, mate] : table.couples(*selection, 1000)) {
     EXPECT_NE(parent, mate);
     EXPECT_EQ(mate < 3, parent < 3) << "of another species";
   }
   const double worth[] = {5 / 3.0, 4 / 3.0, 3 / 3.0, 2 / 2.0, 1 / 2.0};
+  const auto share = shares(*selection, table, 40000);
   for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(share[i], worth[i] / 5.5, 0.015) << i;
 }
 
 TEST(Species, WithoutMemoryAllAreOne) {
   const auto selection = make<Selection>("species");
-  const auto shares = [&](const Table& table) {
-    std::vector<double> share(3, 0);
-    for (const auto& [parent, mate] : table.couples(*selection, 20000)) share[parent] += 1.0 / 20000;
-    return share;
-  };
-  using ::testing::DoubleNear;
-  EXPECT_THAT(shares(with_genes({{0.1f, 3}, {0.9f, 2}, {0.5f, 1}})),
-              ::testing::ElementsAre(DoubleNear(3.0 / 6, 0.02), DoubleNear(2.0 / 6, 0.02), DoubleNear(1.0 / 6, 0.02)));
-  EXPECT_THAT(shares(with_genes({{0.1f, 1}, {0.9f, -1}, {0.5f, -3}})),
-              ::testing::ElementsAre(DoubleNear(2.0 / 3, 0.02), DoubleNear(1.0 / 3, 0.02), 0))
-      << "counted from the lowest score, if it is below 0";
   Table one_failed = with_genes({{0.1f, 3}, {0.9f, 1}, {0.5f, 2}});
   one_failed.rows[2].scores.clear();
-  EXPECT_THAT(shares(one_failed), ::testing::ElementsAre(DoubleNear(3.0 / 4, 0.02), DoubleNear(1.0 / 4, 0.02), 0));
+  const std::pair<Table, std::vector<double>> cases[] = {
+      {with_genes({{0.1f, 3}, {0.9f, 2}, {0.5f, 1}}), {3.0 / 6, 2.0 / 6, 1.0 / 6}},
+      {with_genes({{0.1f, 3}, {0.9f, 3}, {0.5f, 3}}), {1.0 / 3, 1.0 / 3, 1.0 / 3}},
+      // counted from the lowest score, if it is below 0
+      {with_genes({{0.1f, 1}, {0.9f, -1}, {0.5f, -3}}), {2.0 / 3, 1.0 / 3, 0}},
+      {one_failed, {3.0 / 4, 1.0 / 4, 0}}};
+  for (const auto& [table, expected] : cases) {
+    const auto share = shares(*selection, table);
+    EXPECT_THAT(share, ::testing::Pointwise(::testing::DoubleNear(0.02), expected));
+    EXPECT_EQ(share[2] == 0, expected[2] == 0);
+  }
 }
 
 TEST(Species, BecomeOneWhenTheyAreSimilar) {
@@ -181,16 +169,6 @@ TEST(Species, BecomeOneWhenTheyAreSimilar) {
   EXPECT_EQ(table.rows[1].notes["species"], number);
 }
 
-TEST(Species, EqualScoresHaveEqualChances) {
-  const auto selection = make<Selection>("species", "threshold = 1");
-  Table table = with_genes({{0.1f, 3}, {0.2f, 3}, {0.3f, 3}, {0.4f, 3}});
-  table.keep(*selection, table.survive(*selection, 4));
-  ASSERT_EQ(table.rows.size(), 4u);
-  std::vector<double> share(4, 0);
-  for (const auto& [parent, mate] : table.couples(*selection, 20000)) share[parent] += 1.0 / 20000;
-  for (const double one : share) EXPECT_NEAR(one, 0.25, 0.02);
-}
-
 TEST(Species, FailedRowsDieUnlessAllFailed) {
   const auto selection = make<Selection>("species");
   Table table = with_genes({{0.1f, 3}, {0.9f, 1}, {0.5f, 2}});
@@ -199,29 +177,6 @@ TEST(Species, FailedRowsDieUnlessAllFailed) {
   for (Individual& one : table.rows) one.scores.clear();
   EXPECT_THAT(table.survive(*selection, 2).rows, ::testing::SizeIs(2));
   EXPECT_THAT(table.couples(*selection, 7), ::testing::SizeIs(7));
-}
-
-/// Two peaks of different height: species keep both, and a selection by scores alone loses the lower one.
-TEST(Species, KeepSeveralPeaks) {
-  const auto near_low_peak = [](const char* name) {
-    const auto selection = make<Selection>(name);
-    Evolution evolution(
-        *selection, real_genes(2, 0, 1),
-        [](Individual& one) {
-          const auto peak = [&](double at, double height) {
-            const double x = one.genome[0] - at, y = one.genome[1] - at;
-            return height * std::exp(-20 * (x * x + y * y));
-          };
-          one.scores = {std::max(peak(0.2, 1), peak(0.8, 1.5))};
-        },
-        2);
-    evolution.run(60, 30, 30);
-    EXPECT_GT(evolution.best(), 1.49) << name;
-    return std::count_if(evolution.table.rows.begin(), evolution.table.rows.end(),
-                         [](const Individual& one) { return one.genome[0] < 0.4f; });
-  };
-  EXPECT_GT(near_low_peak("species"), 2);
-  EXPECT_EQ(near_low_peak("elitist"), 0);
 }
 
 }  // namespace

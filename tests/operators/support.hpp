@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <future>
 #include <memory>
 #include <string>
 #include <vector>
@@ -51,15 +50,5 @@ inline Blueprint decoded(const Encoding& encoding, const Genome& genome) {
 }
 
 inline Rng stream(std::uint64_t seed) { return Rng(philox, {seed, 1, 2, 3}); }
-
-/// Returns the result of `call`, and checks that eight simultaneous calls give the same result.
-template <class Call>
-auto from_eight_threads(const Call& call) {
-  const auto alone = call();
-  std::vector<std::future<decltype(call())>> others;
-  for (int i = 0; i < 8; ++i) others.push_back(std::async(std::launch::async, call));
-  for (auto& other : others) EXPECT_EQ(other.get(), alone);
-  return alone;
-}
 
 }  // namespace evodevo::test

@@ -1,5 +1,6 @@
 """Tests the page on the archive: its tables and columns are those of a run, and its queries and program work."""
 
+import contextlib
 import re
 import sqlite3
 import subprocess
@@ -27,15 +28,10 @@ def tables_on_page():
 class Archive(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.scratch = tempfile.TemporaryDirectory()
-        cls.folder = Path(cls.scratch.name, "run")
+        cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory()), "run")
         make_small_run(cls.folder, "--set", "scenario=[{name='flat'}, {name='shaken', start_noise=0.01}]")
-        cls.run_file = sqlite3.connect(f"file:{cls.folder}/run.sqlite?mode=ro", uri=True)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.run_file.close()
-        cls.scratch.cleanup()
+        run_file = sqlite3.connect(f"file:{cls.folder}/run.sqlite?mode=ro", uri=True)
+        cls.run_file = cls.enterClassContext(contextlib.closing(run_file))
 
     def rows(self, query):
         return self.run_file.execute(query).fetchall()
@@ -72,5 +68,4 @@ class Archive(unittest.TestCase):
         self.assertRegex(answer, r"(?m)^neuron 0: bias = -?\d\.\d{3}$")
 
 
-if __name__ == "__main__":
-    unittest.main()
+unittest.main()

@@ -1,7 +1,10 @@
 """Tests that every relative link of every page leads to a file, every anchor to a heading, and that every path in
-backticks exists."""
+backticks exists. Tests that the pages of the installed package are those for authors of operators, and that all their
+links lead to files of the package."""
 
+import os
 import re
+import subprocess
 import tempfile
 import unittest
 from pathlib import Path
@@ -15,6 +18,7 @@ SPAN = re.compile(r"`([^`]+)`")
 SOURCE = re.compile(r"[\w.-]+(?:/[\w.-]+)+\.(?:cpp|hpp|cu|cuh|inc|md|toml|py|mjs|sh|cmake|txt|csv|svg|png|webp|gif)")
 # folders that commands and builds write
 WRITTEN = ("build/", "runs/", "my-plugins/", "my-lab.growth/", "share/", "include/", "lib/", "charts/")
+INSTALLED = {"README.md": "plugins.md"}  # other names in the package
 
 
 def anchor(heading):
@@ -70,15 +74,28 @@ class Links(PageTest):
         self.assertGreater(len(all_pages()), 12)
         self.assert_none([fault for page in all_pages() for fault in faults(page)])
 
-    def test_that_lead_nowhere_are_found(self):
-        with tempfile.TemporaryDirectory() as folder:
-            page = Path(folder, "page.md")
-            page.write_text("# A `heading`, twice\n# A heading, twice\n[good](#a-heading-twice-1) [good](page.md)\n"
-                            "```sh\n# no heading\n[no link](in-a-block.md)\n```\n"
-                            "[bad](nowhere.md)\n![bad](page.png)\n[bad](page.md#no-heading)\n`nowhere/page.cpp`\n")
-            found = list(faults(page))
-            self.assertEqual([fault.split(":")[1] for fault in found], ["8", "9", "10", "11"], found)
+
+class Installed(PageTest):
+    @classmethod
+    def setUpClass(cls):
+        cls.package = Path(cls.enterClassContext(tempfile.TemporaryDirectory())).resolve()
+        install = ["cmake", "--install", os.environ["EVODEVO_BUILD"], "--component", "sdk", "--prefix", cls.package]
+        subprocess.run(install, check=True, stdout=subprocess.DEVNULL)
+        cls.pages = cls.package / "share/doc/evodevo"
+        cls.sources = {INSTALLED.get(page.name, page.name): page for page in (ROOT / "framework/sdk").glob("*.md")}
+
+    def test_all_pages_are_there_with_the_text_of_the_source_tree(self):
+        self.assertEqual({page.name for page in self.pages.iterdir()}, {*self.sources, "operators.md"})
+        for installed, source in self.sources.items():
+            texts = [LINK.sub("", page.read_text(encoding="utf-8")) for page in (self.pages / installed, source)]
+            self.assertTrue(texts[0] == texts[1], f"{source}: build again")
+
+    def test_links_stay_in_the_package(self):
+        self.assert_none([fault for page in self.pages.glob("*.md") for fault in faults_of_links(page)])
+        targets = [self.pages / target.partition("#")[0] for page in self.pages.glob("*.md")
+                   for target in LINK.findall(page.read_text(encoding="utf-8"))]
+        self.assertGreater(len(targets), 50)
+        self.assert_none([target for target in targets if not target.resolve().is_relative_to(self.package)])
 
 
-if __name__ == "__main__":
-    unittest.main()
+unittest.main()

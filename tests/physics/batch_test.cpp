@@ -1,33 +1,34 @@
-// The result of a body does not depend on the other bodies of its batch or on the number of threads.
-#include <gtest/gtest.h>
-
+// The result of a body does not depend on the other bodies of its batch or on the number of threads; a body that
+// diverges is flagged.
 #include <algorithm>
 #include <limits>
 #include <numeric>
 
 #include "analysis/ground.hpp"
-#include "scenes.hpp"
-#include "support.hpp"
+#include "ways.hpp"
 
 namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
-using ::testing::Test;
-
 constexpr Steps stepping{Method::paper_euler, Precision::float32, 0.0005};
 
-/// Bodies of many sizes, each with its result when it is simulated alone.
-class Bodies {
+/// Bodies of many sizes, each with its own steps, and its result when it is simulated alone.
+class Batch : public ::testing::TestWithParam<Method> {
  protected:
-  explicit Bodies(const Steps& steps) : steps_(steps) {
+  Batch() {
     for (std::uint32_t i = 0; i < 9; ++i) {
-      bodies.push_back(random_body(5 + 17 * i, 4 + i, 3 + 3 * i, i));
-      if (i % 3 == 1)  // no muscles
-        for (Material& material : bodies.back().materials) material.amplitude = 0;
+      const Body body = random_body(5 + 17 * i, 4 + i, 3 + 3 * i, i);
+      bodies.push_back(i % 3 == 1 ? passive(body) : body);
     }
-    for (const Body& body : bodies)
-      alone.push_back(simulate(body, state_at_birth(body, full_scene()), full_scene(), steps_, 333, recording));
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      const State birth = state_at_birth(bodies[i], full_scene());
+      alone.push_back(
+          simulate(bodies[i], birth, full_scene(), {GetParam(), precision, dt_of(i)}, steps_of(i), recording));
+    }
   }
+
+  static double dt_of(std::size_t body) { return 0.0005 / static_cast<double>(body + 1); }
+  static std::uint64_t steps_of(std::size_t body) { return 30 + 60 * body; }
 
   /// Simulates the bodies with the indices in `order` in one batch, and expects the same results as for each body
   /// alone.
@@ -36,148 +37,88 @@ class Bodies {
     for (const std::size_t i : order) states.push_back(state_at_birth(bodies[i], full_scene()));
     std::vector<Task> tasks(order.size());
     for (std::size_t t = 0; t < order.size(); ++t)
-      tasks[t] = {.body = &bodies[order[t]], .state = &states[t], .dt = steps_.dt, .steps = 333};
-    make_cpu_simulator(full_scene(), steps_, threads)->run(tasks, recording);
+      tasks[t] = {.body = &bodies[order[t]], .state = &states[t], .dt = dt_of(order[t]), .steps = steps_of(order[t])};
+    make_cpu_simulator(full_scene(), {GetParam(), precision}, threads)->run(tasks, recording);
     for (std::size_t t = 0; t < order.size(); ++t) {
       EXPECT_TRUE(same_bits(states[t], alone[order[t]].state)) << "body " << order[t] << ", " << threads << " threads";
       EXPECT_EQ(tasks[t].stress, alone[order[t]].task.stress);
       EXPECT_EQ(tasks[t].work, alone[order[t]].task.work);
+      EXPECT_DOUBLE_EQ(states[t].time, tasks[t].dt * static_cast<double>(tasks[t].steps));
+      EXPECT_EQ(tasks[t].spring_evaluations, tasks[t].steps * tasks[t].body->springs.size());
     }
   }
 
   static constexpr Recording recording{.stress = true, .work = true};
-  Steps steps_;
+  static constexpr Precision precision = Precision::float32;
   std::vector<Body> bodies;
   std::vector<Answer> alone;
 };
 
-class Batch : public Bodies, public Test {
- protected:
-  Batch() : Bodies(stepping) {}
-};
+INSTANTIATE_TEST_SUITE_P(Methods, Batch, ::testing::ValuesIn(all_methods), named);
 
-class BatchOfEachMethod : public Bodies, public ::testing::TestWithParam<Method> {
- protected:
-  BatchOfEachMethod() : Bodies({GetParam(), Precision::float32, 0.0005}) {}
-};
-
-INSTANTIATE_TEST_SUITE_P(Methods, BatchOfEachMethod, ::testing::ValuesIn(all_methods),
-                         [](const auto& instance) { return name_of(instance.param); });
-
-TEST_P(BatchOfEachMethod, AnyNumberOfThreadsGivesTheSameBits) {
-  std::vector<std::size_t> all(bodies.size());
-  std::iota(all.begin(), all.end(), 0u);
-  for (const int threads : {0, 1, 2, 3, 16}) expect_the_same(all, threads);
-}
-
-TEST_P(BatchOfEachMethod, AnyOrderAndCompositionGivesTheSameBits) {
+TEST_P(Batch, GivesTheSameBitsInAnyOrderAndCompositionOnAnyNumberOfThreads) {
+  for (const int threads : {0, 1, 2, 3, 16}) expect_the_same({0, 1, 2, 3, 4, 5, 6, 7, 8}, threads);
   expect_the_same({8, 7, 6, 5, 4, 3, 2, 1, 0}, 2);
   expect_the_same({3, 3, 3, 0, 8}, 2);
   expect_the_same({}, 2);
 }
 
-TEST_P(BatchOfEachMethod, EveryBodyHasItsOwnSteps) {
-  std::vector<State> states;
-  for (const Body& body : bodies) states.push_back(state_at_birth(body, full_scene()));
-  std::vector<Task> tasks(bodies.size());
-  const auto pace = [](std::size_t i) { return std::pair(0.0005 / static_cast<double>(i + 1), 30 + 60 * i); };
-  for (std::size_t i = 0; i < tasks.size(); ++i)
-    tasks[i] = {.body = &bodies[i], .state = &states[i], .dt = pace(i).first, .steps = pace(i).second};
-  make_cpu_simulator(full_scene(), steps_, 2)->run(tasks, recording);
-  for (std::size_t i = 0; i < tasks.size(); ++i) {
-    const Steps steps{steps_.method, steps_.precision, pace(i).first};
-    const Answer a =
-        simulate(bodies[i], state_at_birth(bodies[i], full_scene()), full_scene(), steps, pace(i).second, recording);
-    EXPECT_TRUE(same_bits(a.state, states[i])) << i;
-    EXPECT_EQ(a.task.stress, tasks[i].stress) << i;
-    EXPECT_DOUBLE_EQ(states[i].time, pace(i).first * static_cast<double>(pace(i).second));
-    EXPECT_EQ(tasks[i].spring_evaluations, pace(i).second * bodies[i].springs.size());
-  }
+TEST(Task, OfNoStepsChangesNothing) {
+  const Body body = random_body(20, 6, 5, 1);
+  const State start = state_at_birth(body, full_scene());
+  const Answer a = simulate_ok(body, start, full_scene(), stepping, 0, {.stress = true});
+  EXPECT_EQ(a.state.position, start.position);  // not even rounded
+  EXPECT_EQ(a.task.stress, std::vector<double>(body.springs.size()));
 }
 
-TEST_F(Batch, ABodyThatDivergesIsFlaggedAndDisturbsNoOther) {
-  // a spring whose oscillation is too fast for the step
-  Body unstable = pair_of_masses(0.2, {1e7, 0, 0, 0}, 1.01);
-  std::vector<State> states{state_at_birth(bodies[4], full_scene()), state_at_birth(unstable, full_scene()),
-                            state_at_birth(bodies[5], full_scene())};
-  std::vector<Task> tasks(3);
-  tasks[0].body = &bodies[4], tasks[1].body = &unstable, tasks[2].body = &bodies[5];
-  for (std::size_t i = 0; i < 3; ++i) tasks[i].state = &states[i], tasks[i].steps = 333;
-  make_cpu_simulator(full_scene(), stepping, 2)->run(tasks, recording);
-  EXPECT_EQ(tasks[1].status, Status::diverged);
-  EXPECT_DOUBLE_EQ(tasks[1].ended_at, 100 * stepping.dt);
-  EXPECT_EQ(tasks[1].spring_evaluations, 100u);
-  EXPECT_FALSE(tasks[1].reason.empty());
-  EXPECT_TRUE(tasks[1].stress.empty());
-  EXPECT_EQ(tasks[1].work, 0);
-  EXPECT_TRUE(same_bits(states[0], alone[4].state));
-  EXPECT_TRUE(same_bits(states[2], alone[5].state));
-}
-
-TEST_F(Batch, ATaskThatDoesNotComeInAsOkIsLeftAlone) {
-  State state = state_at_birth(bodies[2], full_scene());
-  Task task;
-  task.body = &bodies[2], task.state = &state;
-  task.steps = 100;
-  task.status = Status::invalid;
-  task.reason = "no";
-  make_cpu_simulator(full_scene(), stepping, 1)->run({&task, 1}, recording);
-  EXPECT_TRUE(same_bits(state, state_at_birth(bodies[2], full_scene())));
+TEST(Task, ThatDoesNotComeInAsOkIsLeftAlone) {
+  const Body body = random_body(20, 6, 5, 2);
+  const State birth = state_at_birth(body, full_scene());
+  State state = birth;
+  Task task{.body = &body, .state = &state, .steps = 100, .status = Status::invalid, .reason = "no"};
+  make_cpu_simulator(full_scene(), stepping, 1)->run({&task, 1}, all_records);
+  EXPECT_TRUE(same_bits(state, birth));
   EXPECT_EQ(task.status, Status::invalid);
   EXPECT_EQ(task.reason, "no");
 }
 
-TEST(Guard, EnergyFromNothingIsDivergence) {
+TEST(GuardOfEnergy, SaysThatEnergyFromNothingIsDivergence) {
   const Body body = block(1, {1000, 0, 0, 0});
-  State state = state_at_birth(body, {});
+  State state = moving(body, {}, {0, 0, 3.6});  // 10.4 J
   state.time = 0.025;
   state.start_energy = 1;
-  for (Vec3& v : state.velocity) v = {0, 0, 3.6};  // 10.4 J
   const Answer a = simulate(body, state, {}, stepping, 1000);
   EXPECT_EQ(a.task.status, Status::diverged);
   EXPECT_NE(a.task.reason.find("10.4 J"), std::string::npos) << a.task.reason;
   EXPECT_DOUBLE_EQ(a.task.ended_at, 150 * stepping.dt);
   EXPECT_EQ(a.state.time, a.task.ended_at);
   for (Vec3& v : state.velocity) v = {0, 0, 3.4};  // 9.2 J
-  EXPECT_EQ(simulate(body, state, {}, stepping, 1000).task.status, Status::ok);
+  simulate_ok(body, state, {}, stepping, 1000);
 }
 
-TEST(Scenes, MayDifferWithinABatch) {
-  for (const Method method : all_methods)
-    for (const Precision precision : {Precision::float32, Precision::float64}) {
-      SCOPED_TRACE(name_of(method) + " " + name_of(precision));
-      expect_tasks_in_their_own_scenes([&](const Scene& scene) {
-        return make_cpu_simulator(scene, {method, precision}, 2);
-      });
-    }
+TEST(GuardOfEnergy, ChecksAfter100StepsAndAtTheEndOfARun) {
+  // a spring whose oscillation is too fast for the step
+  const Body body = pair_of_masses(0.2, {1e7, 0, 0, 0}, 1.01);
+  for (const auto& [steps, checked] : {std::pair{333u, 100u}, {30u, 30u}}) {
+    const Answer a = simulate(body, state_at_birth(body, {}), {}, stepping, steps, {.stress = true, .work = true});
+    EXPECT_EQ(a.task.status, Status::diverged);
+    EXPECT_DOUBLE_EQ(a.task.ended_at, checked * stepping.dt);
+    EXPECT_EQ(a.task.spring_evaluations, checked);
+  }
 }
 
-TEST(Guard, TheEndOfARunIsChecked) {
-  Body body = pair_of_masses(0.2, {1e7, 0, 0, 0}, 1.01);
-  const Answer a = simulate(body, state_at_birth(body, {}), {}, stepping, 30);
-  EXPECT_EQ(a.task.status, Status::diverged);
-  EXPECT_DOUBLE_EQ(a.task.ended_at, 30 * stepping.dt);
-}
-
-TEST(Guard, WhatIsNotFiniteIsDivergence) {
+TEST(GuardOfEnergy, SaysThatWhatIsNotFiniteIsDivergence) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
-  const Body body = block(1, {1000, 0, 0, 0});
-  for (const double bad : {nan, infinity, -infinity})
-    for (int where = 0; where < 6; ++where) {
-      State state = state_at_birth(body, {});
-      Vec3& v = where < 3 ? state.position[5] : state.velocity[5];
-      (where % 3 == 0 ? v.x : where % 3 == 1 ? v.y : v.z) = bad;
-      const Answer a = simulate(body, state, {}, stepping, 1);
-      EXPECT_EQ(a.task.status, Status::diverged);
-      EXPECT_EQ(a.task.reason.find("non-finite"), 0u) << a.task.reason;
-    }
-}
-
-TEST(Guard, AnUnconnectedMassIsWatchedToo) {
-  const Body body = single_mass(0.2);
-  State state = state_at_birth(body, {});
-  state.position[0].y = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(simulate(body, state, {}, stepping, 1).task.status, Status::diverged);
+  for (const Body& body : {block(1, {1000, 0, 0, 0}), single_mass(0.2)})
+    for (const double bad : {nan, infinity, -infinity})
+      for (int where = 0; where < 6; ++where) {
+        State state = state_at_birth(body, {});
+        Vec3& v = where < 3 ? state.position.back() : state.velocity.back();
+        (where % 3 == 0 ? v.x : where % 3 == 1 ? v.y : v.z) = bad;
+        const Answer a = simulate(body, state, {}, stepping, 1);
+        EXPECT_EQ(a.task.status, Status::diverged);
+        EXPECT_EQ(a.task.reason.find("non-finite"), 0u) << a.task.reason;
+      }
 }
 
 }  // namespace

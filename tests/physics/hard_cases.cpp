@@ -1,24 +1,18 @@
-#include "hard_cases.hpp"
-
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include "analysis/energy.hpp"
 #include "analysis/ground.hpp"
 #include "analysis/stability.hpp"
+#include "cases.hpp"
 
 namespace evodevo::test {
 namespace {
 
 constexpr double g = 9.81;  // gravitational acceleration, m/s^2
-
-std::vector<Vec3> rest_positions(const Body& body) {
-  std::vector<Vec3> places;
-  for (const Mass& mass : body.masses) places.push_back(mass.rest);
-  return places;
-}
 
 /// The largest stable dt of the method, s; that of paper-euler if the method has no limit.
 double limit_of(const Body& body, Method method) {
@@ -39,28 +33,6 @@ HardCase from_birth(std::string name, Body body, const Scene& scene, double dt, 
 
 Outcome flagged_if(bool so) { return so ? Outcome::flagged : Outcome::right; }
 
-Body passive(Body body) {
-  for (Material& material : body.materials) material.amplitude = 0;
-  return body;
-}
-
-Body passive_body() { return passive(random_body(60, 10, 5, 4)); }
-
-/// `body` at its rest positions with scattered velocities of at most `speed` m/s along each axis.
-State shaken(const Body& body, double speed) {
-  State state = resting(body, {});
-  for (std::size_t i = 0; i < state.velocity.size(); ++i) {
-    const double angle = 1 + 12.9898 * static_cast<double>(i);
-    state.velocity[i] = {speed * std::sin(angle), speed * std::sin(2 * angle), speed * std::sin(3 * angle)};
-  }
-  return state;
-}
-
-/// Sets all rest lengths to the distances between the rest positions.
-void relax(Body& body) {
-  for (Spring& s : body.springs) s.rest_length = norm(body.masses[s.b].rest - body.masses[s.a].rest);
-}
-
 Body with_stiffnesses(double a, double b) {
   Body body = random_body(40, 8, 2, 6);
   body.materials = {{a, 0, 0, 0}, {b, 0, 0, 0}};
@@ -76,7 +48,7 @@ HardCase very_stiff_springs(Method method, Outcome outcome) {
 }
 
 HardCase near_the_limit(std::string name, double part, Method method) {
-  const Body body = passive_body();
+  const Body body = passive(random_body(60, 10, 5, 4));
   HardCase c = from(std::move(name), body, shaken(body, 1e-3), {}, part * limit_of(body, method), 10000,
                     flagged_if(part > 1 && is_explicit(method)));
   // near the limit, energy oscillates around the conserved, modified energy by a factor of (1 + h/2)/(1 - h/2), which
@@ -92,14 +64,21 @@ Body with_masses(double a, double b) {
   return body;
 }
 
-/// Two positions with two masses each; all pairs of masses are joined.
-Body coincident_springs() {
+/// Masses of 0.2 kg, all pairs of which are joined by muscles with two phases in turn.
+Body joined(const std::array<Vec3, 4>& places) {
   Body body;
-  body.materials = {{5000, 0.14, 1, 0}};
-  body.masses = {{{0, 0, 0}, 0.2}, {{0, 0, 0}, 0.2}, {{1, 0, 0}, 0.2}, {{1, 0, 0}, 0.2}};
+  body.materials = {{5000, 0.14, 1, 0}, {5000, 0.14, 1, pi}};
+  for (const Vec3& place : places) body.masses.push_back({place, 0.2});
   for (std::uint32_t a = 0; a < 4; ++a)
-    for (std::uint32_t b = a + 1; b < 4; ++b) body.springs.push_back({a, b, 0, 0});
+    for (std::uint32_t b = a + 1; b < 4; ++b) body.springs.push_back({a, b, 0, (a + b) % 2});
   relax(body);
+  return body;
+}
+
+/// Two positions with two masses each; all pairs of masses are joined by muscles of one phase.
+Body coincident_springs() {
+  Body body = joined({{{0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {1, 0, 0}}});
+  body.materials[1].phase = 0;
   return body;
 }
 
@@ -168,13 +147,9 @@ HardCase at_the_edge_of_sliding() {
   return c;
 }
 
-HardCase thrown(std::string name, const Scene& scene, double dt, double most_gain, Outcome outcome) {
+HardCase thrown_down(std::string name, const Scene& scene, double dt, double most_gain, Outcome outcome) {
   const Body body = block(2, {5000, 0, 0, 0});
-  State start = state_at_birth(body, scene);
-  for (std::size_t i = 0; i < start.position.size(); ++i) {
-    start.position[i].z += 0.5;
-    start.velocity[i] = {0, 0, -100};
-  }
+  const State start = thrown(body, scene, {0, 0, 0.5}, {0, 0, -100});
   HardCase c = from(std::move(name), body, start, scene, dt, static_cast<std::uint64_t>(0.5 / dt), outcome);
   c.most_gain = most_gain;
   return c;
@@ -207,14 +182,9 @@ HardCase fast_muscles(std::string name, double frequency) {
   return from_birth(std::move(name), body, walking_scene(), 0.0005, 4000, Outcome::right_or_flagged);
 }
 
-/// Four masses joined by muscles with two phases, which walk for ten minutes.
+/// Four masses joined by muscles, which walk for ten minutes.
 HardCase ten_minutes() {
-  Body body;
-  body.materials = {{5000, 0.14, 1, 0}, {5000, 0.14, 1, pi}};
-  body.masses = {{{0, 0, 0}, 0.2}, {{0.1, 0, 0}, 0.2}, {{0, 0.1, 0}, 0.2}, {{0, 0, 0.1}, 0.2}};
-  for (std::uint32_t a = 0; a < 4; ++a)
-    for (std::uint32_t b = a + 1; b < 4; ++b) body.springs.push_back({a, b, 0, (a + b) % 2});
-  relax(body);
+  const Body body = joined({{{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}, {0, 0, 0.1}}});
   Scene scene = walking_scene();
   scene.floor = Floor{1e5};
   HardCase c = from_birth("ten_minutes", body, scene, 0.001, 600000);
@@ -237,19 +207,11 @@ HardCase not_a_number(std::string name, double number) {
   return c;
 }
 
-/// Expects that all numbers of the result are finite.
-void expect_finite(const Task& task, const State& state) {
-  EXPECT_TRUE(std::isfinite(task.work));
-  for (const double stress : task.stress) EXPECT_TRUE(std::isfinite(stress));
-  for (const Vec3& x : state.position) EXPECT_TRUE(std::isfinite(x.x + x.y + x.z));
-  for (const Vec3& v : state.velocity) EXPECT_TRUE(std::isfinite(v.x + v.y + v.z));
-}
-
 void expect_right(const HardCase& c, const Task& task, const State& end, double rounding) {
   EXPECT_DOUBLE_EQ(end.time, c.dt * static_cast<double>(c.steps));
   EXPECT_EQ(task.stress.size(), c.body.springs.size());
   EXPECT_GE(task.work, 0);
-  expect_finite(task, end);
+  EXPECT_TRUE(is_finite(task, end));
   const double given = total_energy(c.body, c.start, c.scene) + task.work;
   EXPECT_LE(total_energy(c.body, end, c.scene), c.most_gain * given + rounding) << "of " << given << " J";
   c.check(end);
@@ -273,11 +235,8 @@ struct Neighbour {
 
 void expect_outcome(const HardCase& c, Simulator& simulator, double rounding) {
   constexpr Recording all{.stress = true, .work = true};
-  std::vector<Neighbour> alone;
-  for (const std::uint64_t seed : {1u, 2u}) {
-    const Body body = random_body(30, 6, 5, seed);
-    alone.push_back({body, state_at_birth(body, c.scene)});
-  }
+  const Body first = random_body(30, 6, 5, 1), second = random_body(30, 6, 5, 2);
+  std::vector<Neighbour> alone{{first, state_at_birth(first, c.scene)}, {second, state_at_birth(second, c.scene)}};
   std::vector<Neighbour> beside = alone;
   State state = c.start;
   std::vector<Task> batch{
@@ -298,6 +257,24 @@ void expect_outcome(const HardCase& c, Simulator& simulator, double rounding) {
     EXPECT_NE(c.outcome, Outcome::right) << task.reason << " at " << task.ended_at << " s";
     expect_flagged(c, task);
   }
+}
+
+/// Two masses of 0.2 kg joined by a muscle that is `length` m long, has the amplitude `amplitude`, and is driven at
+/// resonance.
+Body resonant_pair(double length, double amplitude) {
+  Body body = pair_of_masses(0.2, {5000, amplitude, std::sqrt(2 * 5000 / 0.2) / (2 * pi), 0}, length);
+  body.springs[0].rest_length = length;
+  return body;
+}
+
+/// Kinetic and elastic energy of resonant_pair(), which starts at rest at t = 0. It holds as long as the stretch is
+/// less than the length; the distance of the masses is length (1 + amplitude/2 (sin wt - wt cos wt)).
+double energy_at_resonance(double length, double amplitude, double t) {
+  const double w = std::sqrt(2 * 5000 / 0.2), angle = w * t;
+  const double distance = length * amplitude / 2 * (std::sin(angle) - angle * std::cos(angle));
+  const double speed = length * amplitude / 2 * w * angle * std::sin(angle);
+  const double stretch = distance - length * amplitude * std::sin(angle);
+  return 0.5 * 0.1 * speed * speed + 0.5 * 5000 * stretch * stretch;
 }
 
 }  // namespace
@@ -330,9 +307,9 @@ std::vector<HardCase> hard_cases(Method method) {
       from_birth("collinear_body_upright", collinear_body({0, 0, 1}), walking, 0.0005, 4000),
       lonely_mass(),
       at_the_edge_of_sliding(),
-      thrown("thrown_at_100_m_per_s", walking, 0.0005, 10, Outcome::right_or_flagged),
-      thrown("thrown_at_100_m_per_s_in_small_steps", walking, 0.00005, 1.05, Outcome::right),
-      thrown("thrown_at_100_m_per_s_on_a_rigid_floor", on_rigid_floor(0.8), 0.0005, 1.05, Outcome::right),
+      thrown_down("thrown_at_100_m_per_s", walking, 0.0005, 10, Outcome::right_or_flagged),
+      thrown_down("thrown_at_100_m_per_s_in_small_steps", walking, 0.00005, 1.05, Outcome::right),
+      thrown_down("thrown_at_100_m_per_s_on_a_rigid_floor", on_rigid_floor(0.8), 0.0005, 1.05, Outcome::right),
       bounces_in_long_steps(),
       fast_muscles("muscles_of_1999_Hz", 1999),
       fast_muscles("muscles_of_700_Hz", 700),
@@ -349,6 +326,60 @@ void expect_outcomes(const std::vector<HardCase>& cases, const SimulatorFactory&
     SCOPED_TRACE(c.name);
     expect_outcome(c, *simulator_for(c.scene), rounding);
   }
+}
+
+void expect_resonance_to_live(const SimulatorFactory& simulator_for, Method method) {
+  const auto simulator = simulator_for({});
+  const double truth = energy_at_resonance(1, 0.05, 0.1), strain = 0.5 * 5000 * 0.1 * 0.1;
+  ASSERT_GT(truth, 10 * strain);
+  const Body linear = resonant_pair(1, 0.05);
+  const Answer early = simulate(*simulator, linear, resting(linear, {}), 0.0001, 1000);
+  EXPECT_EQ(early.task.status, Status::ok) << early.task.reason;
+  if (is_explicit(method)) {
+    EXPECT_NEAR(total_energy(linear, early.state, {}), truth, 0.05 * truth);
+  }
+  // long enough for the masses to fly through each other repeatedly
+  const Body wild = resonant_pair(0.5, 0.14);
+  for (const Recording recording : {Recording{}, Recording{.stress = true, .work = true}}) {
+    const Answer late = simulate(*simulator, wild, resting(wild, {}), 0.0005, 4000, recording);
+    EXPECT_EQ(late.task.status, Status::ok) << late.task.reason;
+  }
+}
+
+void expect_pumped_bodies_to_end(const SimulatorFactory& simulator_for) {
+  const auto simulator = simulator_for(walking_scene());
+  int ended = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    Body body = random_body(150, 40, 5, seed);
+    for (Mass& mass : body.masses) mass.mass = 0.05;
+    const State birth = state_at_birth(body, walking_scene());
+    ended += simulate(*simulator, body, birth, 0.0005, 10000).task.status == Status::diverged;
+    const Answer healthy = simulate(*simulator, body, birth, 0.0001, 10000);
+    EXPECT_EQ(healthy.task.status, Status::ok) << seed << ": " << healthy.task.reason;
+  }
+  EXPECT_GE(ended, 1);
+}
+
+void expect_one_bound(const SimulatorFactory& simulator_for) {
+  const auto simulator = simulator_for({});
+  const Body body = random_body(30, 6, 5, 4);
+  const State start = resting(body, {});
+  double sum = 0;
+  for (const Spring& spring : body.springs) {
+    const Material& m = body.materials[spring.material];
+    sum += m.stiffness * std::pow(2 * pi * m.frequency * m.amplitude * spring.rest_length, 2);
+  }
+  const Answer once = simulate(*simulator, body, start, 0.0003, 900);
+  State state = start;
+  for (const std::uint64_t steps : {250u, 0u, 50u, 600u})
+    state = simulate(*simulator, body, state, 0.0003, steps).state;
+  const double expected = std::pow(std::sqrt(start.start_energy) + 900 * 0.0003 * std::sqrt(sum / 2), 2);
+  EXPECT_NEAR(once.state.start_energy, expected, 1e-9 * expected);
+  EXPECT_NEAR(state.start_energy, expected, 1e-9 * expected);
+
+  State other = start;
+  other.start_energy = 0.3;
+  EXPECT_EQ(simulate(*simulator, passive(body), other, 0.0003, 900).state.start_energy, 0.3);
 }
 
 }  // namespace evodevo::test

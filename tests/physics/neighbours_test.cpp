@@ -1,4 +1,4 @@
-// k-nearest neighbours, compared with a search through all distances.
+// k-nearest neighbours, compared with a search through all distances, and the colouring of springs.
 #include "analysis/neighbours.hpp"
 
 #include <gtest/gtest.h>
@@ -8,9 +8,12 @@
 #include <set>
 #include <stdexcept>
 
+#include "analysis/colouring.hpp"
 #include "evodevo/lattice.hpp"
+#include "random_numbers.hpp"
+#include "support.hpp"
 
-namespace evodevo::EVODEVO_FILE {
+namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 using Pairs = std::vector<IndexPair>;
@@ -29,18 +32,13 @@ Pairs brute_force(const std::vector<Vec3>& places, std::uint32_t k) {
   return {pairs.begin(), pairs.end()};
 }
 
-std::vector<Vec3> random_places(std::uint32_t n, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
-  std::vector<Vec3> places(n);
-  for (Vec3& p : places) p.x = unit(), p.y = unit(), p.z = unit();
-  return places;
+void expect_those_of_brute_force(const std::vector<Vec3>& places, std::initializer_list<std::uint32_t> numbers) {
+  for (const std::uint32_t k : numbers) EXPECT_EQ(nearest_pairs(places, k), brute_force(places, k)) << k;
 }
 
 TEST(Neighbours, RandomPlaces) {
-  for (const std::uint32_t n : {2u, 11u, 300u})
-    for (const std::uint32_t k : {1u, 5u, 25u})
-      EXPECT_EQ(nearest_pairs(random_places(n, n), k), brute_force(random_places(n, n), k));
+  for (const std::uint32_t n : {0u, 1u, 2u, 6u, 11u, 300u})
+    expect_those_of_brute_force(random_places(n, n), {0, 1, 5, 25});
 }
 
 TEST(Neighbours, EquallyNearPlacesGoByIndex) {
@@ -48,29 +46,17 @@ TEST(Neighbours, EquallyNearPlacesGoByIndex) {
   std::vector<Vec3> places = make_lattice({5, 6, 4}, 1).corners;
   std::mt19937_64 random(1);
   std::shuffle(places.begin(), places.end(), random);
-  for (const std::uint32_t k : {1u, 4u, 7u, 25u}) EXPECT_EQ(nearest_pairs(places, k), brute_force(places, k)) << k;
+  expect_those_of_brute_force(places, {1, 4, 7, 25});
   // away from the origin, where distances in the tree are rounded
   for (Vec3& p : places) p = 0.1 * p + Vec3{0.3, -7.7, 1e3};
-  for (const std::uint32_t k : {1u, 4u, 7u, 25u}) EXPECT_EQ(nearest_pairs(places, k), brute_force(places, k)) << k;
+  expect_those_of_brute_force(places, {1, 4, 7, 25});
 }
 
 TEST(Neighbours, Duplicates) {
   std::vector<Vec3> places = random_places(20, 7);
   for (int copies = 0; copies < 3; ++copies) places.insert(places.end(), places.begin(), places.begin() + 20);
-  for (const std::uint32_t k : {1u, 2u, 3u, 5u, 30u}) EXPECT_EQ(nearest_pairs(places, k), brute_force(places, k)) << k;
-  const std::vector<Vec3> all_the_same(50, Vec3{1, 2, 3});
-  EXPECT_EQ(nearest_pairs(all_the_same, 3), brute_force(all_the_same, 3));
-}
-
-TEST(Neighbours, AllAreJoinedWhereThereAreNoMore) {
-  const std::vector<Vec3> places = random_places(6, 3);
-  for (const std::uint32_t k : {5u, 6u, 100u}) EXPECT_EQ(nearest_pairs(places, k).size(), 15u);
-}
-
-TEST(Neighbours, NothingToJoin) {
-  EXPECT_TRUE(nearest_pairs({}, 3).empty());
-  EXPECT_TRUE(nearest_pairs(random_places(1, 1), 3).empty());
-  EXPECT_TRUE(nearest_pairs(random_places(9, 1), 0).empty());
+  expect_those_of_brute_force(places, {1, 2, 3, 5, 30});
+  expect_those_of_brute_force(std::vector<Vec3>(50, Vec3{1, 2, 3}), {3});
 }
 
 TEST(Neighbours, OfAPopulation) {
@@ -93,10 +79,25 @@ TEST(Neighbours, PassesOnWhatTheCallerThrows) {
   const std::vector<Vec3> places = random_places(9, 1);
   const std::vector<PointCloud> clouds{{places, 2}, {places, 3}};
   Workers workers(2);
-  EXPECT_THROW(
-      make_cpu_neighbour_search()->find(clouds, workers, [](std::size_t, auto) { throw std::range_error("no"); }),
-      std::range_error);
+  const auto fail = [](std::size_t, auto) { throw std::range_error("no"); };
+  EXPECT_THROW(make_cpu_neighbour_search()->find(clouds, workers, fail), std::range_error);
+}
+
+TEST(Colouring, NoTwoSpringsOfAColourShareAMass) {
+  EXPECT_TRUE(spring_colours({}).empty());
+  for (const Body& body : {random_body(150, 12, 5, 1), block(3, {5000, 0, 0, 0})}) {
+    const std::vector<std::uint32_t> colours = spring_colours(body);
+    ASSERT_EQ(colours.size(), body.springs.size());
+    std::vector<std::set<std::uint32_t>> at(body.masses.size());
+    std::size_t highest_degree = 0;
+    for (std::size_t i = 0; i < colours.size(); ++i)
+      for (const std::uint32_t mass : {body.springs[i].a, body.springs[i].b}) {
+        EXPECT_TRUE(at[mass].insert(colours[i]).second) << "spring " << i;
+        highest_degree = std::max(highest_degree, at[mass].size());
+      }
+    EXPECT_LT(*std::max_element(colours.begin(), colours.end()), 2 * highest_degree - 1);
+  }
 }
 
 }  // namespace
-}  // namespace evodevo::EVODEVO_FILE
+}  // namespace evodevo::test::EVODEVO_FILE

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <vector>
 
 #include "evodevo/body.hpp"
 
@@ -25,5 +26,13 @@ class Random {
  private:
   std::mt19937_64 generator_;
 };
+
+/// Random places in a cube of side 2 m around the origin.
+inline std::vector<Vec3> random_places(std::size_t count, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<Vec3> places(count);
+  for (Vec3& place : places) place = random.vector(1);
+  return places;
+}
 
 }  // namespace evodevo::test

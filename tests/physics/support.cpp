@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <random>
 
 #include "analysis/energy.hpp"
+#include "analysis/ground.hpp"
 #include "analysis/neighbours.hpp"
 #include "evodevo/lattice.hpp"
+#include "random_numbers.hpp"
 
 namespace evodevo::test {
 
@@ -36,8 +37,8 @@ Body pair_of_masses(double mass, const Material& material, double distance) {
 }
 
 Body random_body(std::uint32_t masses, std::uint32_t neighbours, std::uint32_t materials, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+  Random random(seed);
+  const auto unit = [&] { return random.between(0, 1); };
   const Material muscle{5000, 0.14, 1, 0}, tissue{4000, 0, 0, 0};
   Body body;
   body.materials = {muscle, tissue, {5000, 0.14, 1, pi}, {10000, 0, 0, 0}, mean(muscle, tissue)};
@@ -73,27 +74,68 @@ Body block(std::uint32_t n, const Material& material) {
   return body;
 }
 
+Body passive(Body body) {
+  for (Material& material : body.materials) material.amplitude = 0;
+  return body;
+}
+
+void relax(Body& body) {
+  for (Spring& s : body.springs) s.rest_length = norm(body.masses[s.b].rest - body.masses[s.a].rest);
+}
+
+std::vector<Vec3> rest_positions(const Body& body) {
+  std::vector<Vec3> places;
+  for (const Mass& mass : body.masses) places.push_back(mass.rest);
+  return places;
+}
+
 Scene full_scene() { return {Gravity{}, Floor{}, Friction{}, Damping{}, Drag{0.05}}; }
 Scene walking_scene() { return {Gravity{}, Floor{}, Friction{}, Damping{}, std::nullopt}; }
 
 State resting(const Body& body, const Scene& scene) {
-  State state;
-  for (const Mass& mass : body.masses) state.position.push_back(mass.rest);
+  State state{.position = rest_positions(body)};
   state.velocity.resize(body.masses.size());
   state.start_energy = total_energy(body, state, scene);
   return state;
 }
 
-Answer simulate(const Body& body, State state, const Scene& scene, const Steps& stepping, std::uint64_t steps,
+State moving(const Body& body, const Scene& scene, Vec3 velocity) {
+  State state = resting(body, scene);
+  for (Vec3& v : state.velocity) v = velocity;
+  state.start_energy = total_energy(body, state, scene);
+  return state;
+}
+
+State thrown(const Body& body, const Scene& scene, Vec3 shift, Vec3 velocity) {
+  State state = state_at_birth(body, scene);
+  for (Vec3& place : state.position) place = place + shift;
+  for (Vec3& v : state.velocity) v = velocity;
+  state.start_energy = total_energy(body, state, scene);
+  return state;
+}
+
+State shaken(const Body& body, double speed) {
+  State state = resting(body, {});
+  for (std::size_t i = 0; i < state.velocity.size(); ++i) {
+    const double angle = 1 + 12.9898 * static_cast<double>(i);
+    state.velocity[i] = {speed * std::sin(angle), speed * std::sin(2 * angle), speed * std::sin(3 * angle)};
+  }
+  state.start_energy = total_energy(body, state, {});
+  return state;
+}
+
+Answer simulate(Simulator& simulator, const Body& body, const State& state, double dt, std::uint64_t steps,
                 Recording recording) {
-  Answer answer{{}, std::move(state)};
-  answer.task.body = &body;
-  answer.task.state = &answer.state;
-  answer.task.dt = stepping.dt;
-  answer.task.steps = steps;
-  make_cpu_simulator(scene, stepping, 1)->run({&answer.task, 1}, recording);
+  Answer answer{{}, state};
+  answer.task = {.body = &body, .state = &answer.state, .dt = dt, .steps = steps};
+  simulator.run({&answer.task, 1}, recording);
   answer.task.state = nullptr;  // this pointer would dangle if the answer were moved
   return answer;
+}
+
+Answer simulate(const Body& body, const State& state, const Scene& scene, const Steps& stepping, std::uint64_t steps,
+                Recording recording) {
+  return simulate(*make_cpu_simulator(scene, stepping, 1), body, state, stepping.dt, steps, recording);
 }
 
 Reference reference(const Body& body, State state, const Scene& scene, double dt, std::uint64_t steps) {
@@ -141,6 +183,27 @@ Reference reference(const Body& body, State state, const Scene& scene, double dt
   state.time = start + static_cast<double>(steps) * dt;
   result.state = std::move(state);
   return result;
+}
+
+Vec3 cross(Vec3 a, Vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+
+Momentum momentum(const Body& body, const State& state) {
+  Momentum sum;
+  for (std::size_t i = 0; i < body.masses.size(); ++i) {
+    const Vec3 p = body.masses[i].mass * state.velocity[i];
+    sum.linear = sum.linear + p;
+    sum.angular = sum.angular + cross(state.position[i], p);
+    sum.scale += norm(p);
+  }
+  return sum;
+}
+
+bool is_finite(const Task& task, const State& state) {
+  double sum = task.work;
+  for (const double stress : task.stress) sum += stress;
+  for (const Vec3& x : state.position) sum += norm(x);
+  for (const Vec3& v : state.velocity) sum += norm(v);
+  return std::isfinite(sum);
 }
 
 double largest_difference(const State& a, const State& b) {

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -42,6 +44,12 @@ std::string name_of(Method method);
 using Arithmetic = std::tuple<Method, Precision>;
 std::string name_of(const Arithmetic& arithmetic);
 
+/// Makes a simulator of a scene, on any device.
+using SimulatorFactory = std::function<std::unique_ptr<Simulator>(const Scene&)>;
+
+inline constexpr Recording all_records{
+    .stress = true, .work = true, .peak_force = true, .muscle_work = true, .tension = true};
+
 /// A body of one mass at `place`.
 Body single_mass(double mass, Vec3 place = {});
 
@@ -58,6 +66,14 @@ Body with_dashpots(Body body);
 /// A lattice of n x n x n voxels with edges of 0.1 m and masses of 0.2 kg.
 Body block(std::uint32_t n, const Material& material);
 
+/// The same body without muscles.
+Body passive(Body body);
+
+/// Sets all rest lengths to the distances between the rest positions.
+void relax(Body& body);
+
+std::vector<Vec3> rest_positions(const Body& body);
+
 /// A scene with all forces.
 Scene full_scene();
 /// A scene with gravity, floor, friction and damping.
@@ -66,13 +82,26 @@ Scene walking_scene();
 /// The state of a body at its rest positions with zero velocity; start_energy is set.
 State resting(const Body& body, const Scene& scene);
 
+/// The same, but all masses have a velocity (m/s).
+State moving(const Body& body, const Scene& scene, Vec3 velocity);
+
+/// A body at birth, but `shift` (m) away and with a velocity (m/s) of all masses; start_energy is set.
+State thrown(const Body& body, const Scene& scene, Vec3 shift, Vec3 velocity = {});
+
+/// A body at its rest positions with scattered velocities of at most `speed` m/s along each axis; start_energy is set.
+State shaken(const Body& body, double speed);
+
 struct Answer {
   Task task;
   State state;
 };
 
+/// Simulates one body.
+Answer simulate(Simulator& simulator, const Body& body, const State& state, double dt, std::uint64_t steps,
+                Recording recording = {});
+
 /// Simulates one body with one thread.
-Answer simulate(const Body& body, State state, const Scene& scene, const Steps& stepping, std::uint64_t steps,
+Answer simulate(const Body& body, const State& state, const Scene& scene, const Steps& stepping, std::uint64_t steps,
                 Recording recording = {});
 
 /// The result of a simple implementation in double precision that shares no code with the simulator. It computes one
@@ -83,6 +112,17 @@ struct Reference {
   double work = 0;             ///< work of all muscles [J]
 };
 Reference reference(const Body& body, State state, const Scene& scene, double dt, std::uint64_t steps);
+
+/// The momentum of a body, which internal forces conserve.
+struct Momentum {
+  Vec3 linear, angular;  ///< kg m/s, kg m^2/s about the origin
+  double scale = 0;      ///< sum of |m v|, kg m/s
+};
+Vec3 cross(Vec3 a, Vec3 b);
+Momentum momentum(const Body& body, const State& state);
+
+/// Whether all numbers of a result are finite.
+bool is_finite(const Task& task, const State& state);
 
 /// The largest distance between the positions of two states, m.
 double largest_difference(const State& a, const State& b);

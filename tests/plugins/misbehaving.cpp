@@ -22,8 +22,6 @@
 
 namespace {
 
-using evodevo::Parameters;
-
 volatile bool endless = true;
 
 /// Overflows the stack; written so that the compiler cannot turn the recursion into a loop.
@@ -66,16 +64,16 @@ struct AtEnd {
   std::atomic<bool> crashes = false;  // several threads call an operator
 };
 
-struct Mutation final : evodevo::Mutation {
+/// An operator of a kind that is told what to do.
+template <class Kind>
+struct Told : Kind {
   std::string how = "well";
   mutable AtEnd at_end;
 
-  void parameters(Parameters& p) override {
-    p.choice(how, "how",
-             {"well", "hang", "exit", "exit-at-once", "quick-exit", "overflow", "crash-at-end", "round", "flush",
-              "locale", "thread-locale", "global-locale", "fork", "fork-and-throw"},
-             "What it does.");
-  }
+  void parameters(evodevo::Parameters& p) override { p.text(how, "how", "What it does."); }
+};
+
+struct Mutation final : Told<evodevo::Mutation> {
   void mutate(evodevo::Genome&, const evodevo::Layout&, evodevo::Rng&) const override {
     at_end.crashes = how == "crash-at-end";
     if (how == "hang") hang();
@@ -96,15 +94,7 @@ struct Mutation final : evodevo::Mutation {
   }
 };
 
-struct Encoding final : evodevo::Encoding {
-  std::string how = "well";
-  mutable AtEnd at_end;
-
-  void parameters(Parameters& p) override {
-    p.choice(how, "how",
-             {"well", "crash-in-layout", "throw-in-layout", "twin", "turned-twin", "loop", "crash", "crash-at-end"},
-             "What it does.");
-  }
+struct Encoding final : Told<evodevo::Encoding> {
   evodevo::Layout layout(const evodevo::EncodingContext&) const override {
     if (how == "crash-in-layout") std::raise(SIGSEGV);
     if (how == "throw-in-layout") throw 7;
@@ -121,20 +111,11 @@ struct Encoding final : evodevo::Encoding {
     blueprint.body.masses = {{{0, 0, 0}, 0.2}, {{0.7, 0, 0}, 0.2}, {{0, 0.7, 0}, 0.2}};
     blueprint.body.springs = {{0, 1, 0.7, 1}, {1, 2, 0.99, 1}, {2, 0, 0.7, 1}};
     if (how == "twin") blueprint.body.springs.push_back({1, 2, 0.99, 1});
-    if (how == "turned-twin") blueprint.body.springs.push_back({2, 1, 0.99, 1});
-    if (how == "loop") blueprint.body.springs.push_back({2, 2, 0.99, 1});
     return blueprint;
   }
 };
 
-struct Devo final : evodevo::Devo {
-  std::string how = "well";
-  mutable AtEnd at_end;
-
-  void parameters(Parameters& p) override {
-    p.choice(how, "how", {"well", "crash", "overflow", "crash-when-asked", "throw-when-asked", "crash-at-end"},
-             "What it does.");
-  }
+struct Devo final : Told<evodevo::Devo> {
   evodevo::RecordRequest observes() const override {
     if (how == "crash-when-asked") std::raise(SIGSEGV);
     if (how == "throw-when-asked") throw 7;
@@ -147,34 +128,7 @@ struct Devo final : evodevo::Devo {
   }
 };
 
-struct Fitness final : evodevo::Fitness {
-  std::string how = "well";
-  mutable AtEnd at_end;
-
-  void parameters(Parameters& p) override {
-    p.choice(how, "how",
-             {"well",
-              "no-window",
-              "endless-window",
-              "early-window",
-              "window-that-is-no-number",
-              "no-objective",
-              "nameless-objective",
-              "descriptor-without-cells",
-              "descriptor-with-too-many-cells",
-              "empty-descriptor",
-              "one-score-too-many",
-              "crash-at-end",
-              "samples-without-end",
-              "samples-below-0",
-              "channels-without-samples",
-              "before-birth",
-              "after-the-last-cycle",
-              "beyond-the-life",
-              "unknown-role",
-              "twin-scores"},
-             "What it does.");
-  }
+struct Fitness final : Told<evodevo::Fitness> {
   evodevo::Request observes() const override {
     if (how == "no-window") return {0, 0, false};
     if (how == "endless-window") return {0, std::numeric_limits<double>::infinity(), false};
@@ -204,13 +158,7 @@ struct Fitness final : evodevo::Fitness {
   }
 };
 
-struct Selection final : evodevo::Selection {
-  std::string how = "well";
-
-  void parameters(Parameters& p) override {
-    p.choice(how, "how", {"well", "no-parents", "too-few-parents", "no-survivors", "nameless-note", "twin-notes"},
-             "What it does.");
-  }
+struct Selection final : Told<evodevo::Selection> {
   std::vector<evodevo::NoteTitle> notes() const override {
     if (how == "nameless-note") return {{"age"}, {""}};
     if (how == "twin-notes") return {{"age"}, {"size"}, {"age"}};

@@ -1,4 +1,4 @@
-// Plugins that load, but break one rule each, which a macro WRONG_... selects.
+// Plugins that load, but break one rule each, which the macro FAULT names.
 #include <unistd.h>
 
 #include <algorithm>
@@ -8,6 +8,7 @@
 #include <ctime>
 #include <numeric>
 #include <random>
+#include <string_view>
 
 #include "evodevo/helpers/rows.hpp"
 #include "evodevo/helpers/selection/memory.hpp"
@@ -20,29 +21,15 @@ using evodevo::Genome;
 using evodevo::Layout;
 using evodevo::Rng;
 
-#if defined(WRONG_TWINS)
+constexpr std::string_view fault = FAULT;
 
-struct Wrong final : evodevo::Crossover {
-  Genome cross(const evodevo::Parents&, const Layout& layout, Rng& rng) const override {
-    return random_genome(layout, rng);
+struct Crossover final : evodevo::Crossover {
+  Genome cross(const evodevo::Parents& parents, const Layout& layout, Rng& rng) const override {
+    return fault == "twins" ? random_genome(layout, rng) : parents.first;
   }
 };
 
-#elif defined(WRONG_CHANGES_CROSSOVER)
-
-struct Wrong final : evodevo::Crossover {
-  Genome cross(const evodevo::Parents& parents, const Layout&, Rng&) const override { return parents.first; }
-};
-
-#elif defined(WRONG_CHANGES)
-
-struct Wrong final : evodevo::Mutation {
-  void mutate(Genome&, const Layout&, Rng&) const override {}
-};
-
-#elif defined(WRONG_DECODING) || defined(WRONG_DECODING_GROWTH) || defined(WRONG_DECODING_NOTHING)
-
-struct Wrong final : evodevo::Encoding {
+struct Encoding final : evodevo::Encoding {
   Layout layout(const evodevo::EncodingContext&) const override {
     Layout layout;
     layout.add_block(2, {0, 1});
@@ -51,146 +38,89 @@ struct Wrong final : evodevo::Encoding {
   evodevo::Blueprint decode(const Genome&, const evodevo::Layout&,
                             const evodevo::EncodingContext& context) const override {
     evodevo::Blueprint blueprint;
-#if defined(WRONG_DECODING_NOTHING)
-    blueprint.failure = "never";
-#endif
+    if constexpr (fault == "decoding_nothing") blueprint.failure = "never";
     blueprint.body.materials = context.materials;
     blueprint.body.masses = {{{0, 0, 0}, 1}, {{1, 0, 0}, 1}};
-#if defined(WRONG_DECODING)
-    blueprint.body.springs = {{ 0, 2, 1, 1 }};  // there is no mass 2
-#else
-    blueprint.body.springs = {{ 0, 1, 1, 1, 1.5F }};
-#endif
+    blueprint.body.springs = {{0, fault == "decoding" ? 2u : 1u, 1, 1}};  // there is no mass 2
+    if constexpr (fault == "decoding_growth" || fault == "decoding_nothing")
+      blueprint.body.springs = {{0, 1, 1, 1, 1.5F}};
+    if constexpr (fault == "decoding_memory") blueprint.mass_memory["stem"] = {1, 2, 3};
     return blueprint;
   }
 };
 
-#elif defined(WRONG_BODIES) || defined(WRONG_BODIES_DANGLING) || defined(WRONG_BODIES_NAN) || \
-    defined(WRONG_BODIES_BEYOND) || defined(WRONG_BODIES_GROWTH) || defined(WRONG_BODIES_DESTROYED)
-
-struct Wrong final : evodevo::Devo {
-  void develop([[maybe_unused]] const evodevo::DevoContext& context, evodevo::Edits& edits, Rng&) const override {
-#if defined(WRONG_BODIES)
-    if (context.body.springs.empty()) return;
-    const evodevo::Spring& twin = context.body.springs[0];
-    edits.new_springs.push_back({twin.a, twin.b, context.body.materials[twin.material], {}});
-#elif defined(WRONG_BODIES_DANGLING)
-    const auto beyond = static_cast<std::uint32_t>(context.body.masses.size());
-    edits.new_springs.push_back({0, beyond, {1000, 0, 0, 0}, {}});
-#elif defined(WRONG_BODIES_NAN)
-    edits.new_springs.push_back({0, 1, {std::nan(""), 0, 0, 0}, {}});
-#elif defined(WRONG_BODIES_DESTROYED)
-    for (std::uint32_t s = 0; s < context.body.springs.size(); ++s) edits.removed_springs.push_back(s);
-#elif defined(WRONG_BODIES_GROWTH)
-    edits.growth = {0, 1};
-#else
-    edits.new_masses.push_back({context.bounds.low - evodevo::Vec3{0, 0, 1}, context.mass});
-#endif
+struct Devo final : evodevo::Devo {
+  std::vector<std::string> mass_memory() const override {
+    if constexpr (fault == "bodies_memory") return {"calls"};
+    return {};
+  }
+  evodevo::Measure measure(evodevo::Causes::List list) const override {
+    if constexpr (fault == "names_measure") return {"<b>work</b>", "J"};
+    return evodevo::Devo::measure(list);
+  }
+  void develop([[maybe_unused]] const evodevo::DevoContext& context, [[maybe_unused]] evodevo::Edits& edits,
+               Rng&) const override {
+    if constexpr (fault == "bodies") {
+      if (context.body.springs.empty()) return;
+      const evodevo::Spring& twin = context.body.springs[0];
+      edits.new_springs.push_back({twin.a, twin.b, context.body.materials[twin.material], {}});
+    } else if constexpr (fault == "bodies_dangling") {
+      const auto beyond = static_cast<std::uint32_t>(context.body.masses.size());
+      edits.new_springs.push_back({0, beyond, {1000, 0, 0, 0}, {}});
+    } else if constexpr (fault == "bodies_nan") {
+      edits.new_springs.push_back({0, 1, {std::nan(""), 0, 0, 0}, {}});
+    } else if constexpr (fault == "bodies_destroyed") {
+      for (std::uint32_t s = 0; s < context.body.springs.size(); ++s) edits.removed_springs.push_back(s);
+    } else if constexpr (fault == "bodies_growth") {
+      edits.growth = {0, 1};
+    } else if constexpr (fault == "bodies_beyond") {
+      edits.new_masses.push_back({context.bounds.low - evodevo::Vec3{0, 0, 1}, context.mass});
+    } else if constexpr (fault == "bodies_memory") {
+      edits.mass_memory.assign(context.body.masses.size() - 1, 1.0);
+    }
   }
 };
 
-#elif defined(WRONG_BODIES_MEMORY)
-
-struct Wrong final : evodevo::Devo {
-  std::vector<std::string> mass_memory() const override { return {"calls"}; }
-  void develop(const evodevo::DevoContext& context, evodevo::Edits& edits, Rng&) const override {
-    edits.mass_memory.assign(context.body.masses.size() - 1, 1.0);
-  }
-};
-
-#elif defined(WRONG_NAMES_MEASURE)
-
-struct Wrong final : evodevo::Devo {
-  evodevo::Measure measure(evodevo::Causes::List) const override { return {"<b>work</b>", "J"}; }
-  void develop(const evodevo::DevoContext&, evodevo::Edits&, Rng&) const override {}
-};
-
-#elif defined(WRONG_DECODING_MEMORY)
-
-struct Wrong final : evodevo::Encoding {
-  Layout layout(const evodevo::EncodingContext&) const override {
-    Layout layout;
-    layout.add_block(2, {0, 1});
-    return layout;
-  }
-  evodevo::Blueprint decode(const Genome&, const evodevo::Layout&,
-                            const evodevo::EncodingContext& context) const override {
-    evodevo::Blueprint blueprint;
-    blueprint.body.materials = context.materials;
-    blueprint.body.masses = {{{0, 0, 0}, 1}, {{1, 0, 0}, 1}};
-    blueprint.body.springs = {{0, 1, 1, 1}};
-    blueprint.mass_memory["stem"] = {1, 2, 3};
-    return blueprint;
-  }
-};
-
-#elif defined(WRONG_TRANSLATION) || defined(WRONG_NAN_HIDDEN) || defined(WRONG_OBJECTIVES) || \
-    defined(WRONG_OBJECTIVES_NAN) || defined(WRONG_NAMES_OBJECTIVE) || defined(WRONG_NAMES_UNIT)
-
-struct Wrong final : evodevo::Fitness {
+struct Fitness final : evodevo::Fitness {
   evodevo::Request observes() const override { return {0, 0.1, false}; }
-#if defined(WRONG_NAMES_OBJECTIVE)
-  static constexpr const char *name = "<b>way</b>", *unit = "m";
-#elif defined(WRONG_NAMES_UNIT)
-  static constexpr const char *name = "way", *unit = "m\n";
-#else
-  static constexpr const char *name = "way", *unit = "m";
-#endif
-  std::vector<evodevo::Objective> objectives() const override { return {{name, unit, true}}; }
+  std::vector<evodevo::Objective> objectives() const override {
+    return {{fault == "names_objective" ? "<b>way</b>" : "way", fault == "names_unit" ? "m\n" : "m", true}};
+  }
   std::vector<double> score(const evodevo::Observation& seen) const override {
     const double way = seen.centre_after.x - seen.centre_before.x;
-#if defined(WRONG_TRANSLATION)
-    return {way + seen.centre_after.x};
-#elif defined(WRONG_NAN_HIDDEN)
-    return {std::isnan(way) ? 0 : way};
-#elif defined(WRONG_OBJECTIVES_NAN)
-    return {-std::nan("") * way};
-#elif defined(WRONG_OBJECTIVES)
-    return {way, way};
-#else
+    if constexpr (fault == "translation") return {way + seen.centre_after.x};
+    if constexpr (fault == "nan_hidden") return {std::isnan(way) ? 0 : way};
+    if constexpr (fault == "objectives_nan") return {-std::nan("") * way};
+    if constexpr (fault == "objectives") return {way, way};
     return {way};
-#endif
   }
 };
 
-#elif defined(WRONG_GENERATIONS) || defined(WRONG_GENERATIONS_NOTE) || defined(WRONG_GENERATIONS_CHILDREN)
-
-struct Wrong final : evodevo::Selection {
+struct Generations final : evodevo::Selection {
   evodevo::Traits traits() const override { return {.is_elitist = false, .makes_children = true}; }
   std::vector<evodevo::NoteTitle> notes() const override { return {{"share"}}; }
   std::vector<evodevo::Child> children(const evodevo::SelectionContext& context, std::uint32_t count,
                                        Rng& rng) const override {
     std::vector<evodevo::Child> children;
     for (std::uint32_t i = 0; i < count; ++i) children.push_back({random_genome(context.layout, rng)});
-#if defined(WRONG_GENERATIONS_CHILDREN)
-    if (context.rows.empty()) children.front().genome.genes.front() = 1000;  // in the first generation alone
-#endif
+    if (fault == "generations_children" && context.rows.empty())
+      children.front().genome.genes.front() = 1000;  // in the first generation alone
     return children;
   }
-  evodevo::Survival survive([[maybe_unused]] const evodevo::SelectionContext& context, std::uint32_t,
-                            Rng&) const override {
+  evodevo::Survival survive(const evodevo::SelectionContext& context, std::uint32_t, Rng&) const override {
     evodevo::Survival survival{{0}};
-#if defined(WRONG_GENERATIONS)
     static int calls = 0;
-    survival.memory = {std::byte(++calls)};
-#elif defined(WRONG_GENERATIONS_NOTE)
+    if (fault == "generations") survival.memory = {std::byte(++calls)};
     const double failed = std::count_if(context.rows.begin(), context.rows.end(), [](auto& row) { return !row.ok(); });
-    survival.notes = {{ 0, 0, 1 / failed }};  // if none failed, no number
-#endif
+    if (fault == "generations_note") survival.notes = {{0, 0, 1 / failed}};  // if none failed, no number
     return survival;
   }
 };
 
-#elif defined(WRONG_ORDER_MEMORY) || defined(WRONG_GENERATIONS_MEMORY)
-
 /// The best survive, and all children are equal to the individual that was born last.
-struct Wrong final : evodevo::Selection {
+struct Remembering final : evodevo::Selection {
   evodevo::Traits traits() const override {
-#if defined(WRONG_ORDER_MEMORY)
-    return {.makes_children = true, .needs_real_genes = true, .needs_memory = true};
-#else
-    return {.makes_children = true, .needs_real_genes = true};
-#endif
+    return {.makes_children = true, .needs_real_genes = true, .needs_memory = fault == "order_memory"};
   }
   std::vector<evodevo::Child> children(const evodevo::SelectionContext& context, std::uint32_t count,
                                        Rng& rng) const override {
@@ -206,30 +136,22 @@ struct Wrong final : evodevo::Selection {
   }
 };
 
-#elif defined(WRONG_ORDER) || defined(WRONG_ELITE) || defined(WRONG_FAILED)
-
-struct Wrong final : evodevo::Selection {
+struct Selection final : evodevo::Selection {
   static std::vector<std::uint32_t> best_first(std::span<const Candidate> rows) {
     std::vector<std::uint32_t> order(rows.size());
     std::iota(order.begin(), order.end(), 0u);
     std::stable_sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
-#if defined(WRONG_FAILED)
-      if (rows[i].ok() != rows[j].ok()) return rows[j].ok();
-#else
-      if (rows[i].ok() != rows[j].ok()) return rows[i].ok();
-#endif
+      if (rows[i].ok() != rows[j].ok()) return rows[fault == "failed" ? j : i].ok();
       return rows[i].ok() && rows[i].scores[0] > rows[j].scores[0];
     });
-#if defined(WRONG_ORDER)
-    std::sort(order.begin(), order.end(),
-              [&](auto i, auto j) { return rows[i].ok() != rows[j].ok() ? rows[i].ok() : i < j; });
-#elif defined(WRONG_ELITE)
-    if (order.size() > 1) order.erase(order.begin());
-#endif
+    if (fault == "order")
+      std::sort(order.begin(), order.end(),
+                [&](auto i, auto j) { return rows[i].ok() != rows[j].ok() ? rows[i].ok() : i < j; });
+    if (fault == "elite" && order.size() > 1) order.erase(order.begin());
     return order;
   }
-  std::vector<std::pair<std::uint32_t, std::uint32_t> > parents(std::span<const Candidate> rows, std::uint32_t count,
-                                                                Rng&) const override {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const Candidate> rows, std::uint32_t count,
+                                                               Rng&) const override {
     const std::uint32_t best = best_first(rows).front();
     return {count, {best, best}};
   }
@@ -240,95 +162,86 @@ struct Wrong final : evodevo::Selection {
   }
 };
 
-#else
-
-#if defined(WRONG_LISTING)
 [[maybe_unused]] const bool slow = [] {
-  while (std::clock() < CLOCKS_PER_SEC / 5) {
+  while (fault == "listing" && std::clock() < CLOCKS_PER_SEC / 5) {
   }
   return true;
 }();
-#endif
 
 thread_local bool made_here = false;
 int calls_in_this_process = 0;
 
-struct Wrong final : evodevo::Mutation {
-  Wrong() { made_here = true; }
+struct Mutation final : evodevo::Mutation {
+  Mutation() { made_here = true; }
 
-#if defined(WRONG_INSTANCES)
-  static inline std::int64_t genes_ = 1;
-#else
+  static inline std::int64_t genes_of_all_ = 1;
   std::int64_t genes_ = 1;
-#endif
   mutable int calls_ = 0;
-
-#if defined(WRONG_INSTANCES_PREPARED)
   static inline float prepared_ = 0;  // what prepare() computes, of all instances
-  void prepare(const evodevo::EncodingContext&) override { prepared_ = 0.1F * static_cast<float>(genes_); }
-#endif
 
-  void parameters(evodevo::Parameters& p) override {
-#if defined(WRONG_DECLARATIONS)
-    p.integer(genes_, "genes", {0, 5, "1"}, "");
-#elif defined(WRONG_NAMES)
-    p.integer(genes_, "genes", {0, 5, "1"}, "Genes that change <script>alert(1)</script>.");
-#elif defined(WRONG_NAMES_CONTROL)
-    p.integer(genes_, "ge\nnes", {0, 5, "1"}, "Genes that change.");
-#elif defined(WRONG_REFUSALS)
-    try {
-      p.integer(genes_, "genes", {0, 5, "1"}, "Genes that change.");
-    } catch (const std::exception&) {
-    }
-#else
-    p.integer(genes_, "genes", {0, 5, "1"}, "Genes that change.");
-#endif
+  void prepare(const evodevo::EncodingContext&) override {
+    if constexpr (fault == "instances_prepared") prepared_ = 0.1F * static_cast<float>(genes_);
   }
-
-  void mutate(Genome& genome, const Layout& layout, [[maybe_unused]] Rng& rng) const override {
+  void parameters(evodevo::Parameters& p) override {
+    const char* help = "Genes that change.";
+    if constexpr (fault == "declarations") help = "";
+    if constexpr (fault == "names") help = "Genes that change <script>alert(1)</script>.";
+    try {
+      p.integer(fault == "instances" ? genes_of_all_ : genes_, fault == "names_control" ? "ge\nnes" : "genes",
+                {0, 5, "1"}, help);
+    } catch (const std::exception&) {
+      if constexpr (fault != "refusals") throw;
+    }
+  }
+  void mutate([[maybe_unused]] Genome& genome, [[maybe_unused]] const Layout& layout,
+              [[maybe_unused]] Rng& rng) const override {
+    if constexpr (fault == "changes") return;
     ++calls_;
     ++calls_in_this_process;
-#if defined(WRONG_NOTHING)
-    if (genome.empty()) return genome.genes.push_back(1);
-#endif
-#if defined(WRONG_ENDLESS)
-    while (genome.empty()) pause();
-#endif
+    if constexpr (fault == "nothing") {
+      if (genome.empty()) return genome.genes.push_back(1);
+    }
+    if constexpr (fault == "endless") {
+      while (genome.empty()) pause();
+    }
     if (genome.empty()) return;
     float& gene = genome[0];
     const evodevo::GeneSpec& spec = layout.gene(genome, 0);
     gene = spec.draw(rng);
-#if defined(WRONG_SAME_SEED)
-    gene = static_cast<float>(std::random_device()() % 1000) / 1000;
-#elif defined(WRONG_THREADS)
-    if (!made_here) gene = spec.low;
-#elif defined(WRONG_BATCH)
-    if (calls_ > 3) gene = spec.low;
-#elif defined(WRONG_INPUTS)
-    const_cast<evodevo::GeneSpec&>(spec).high *= 0.5F;
-#elif defined(WRONG_RESUMING)
-    if (calls_in_this_process > 5) gene = spec.draw(rng);
-#elif defined(WRONG_LAYOUT)
-    gene = spec.high + 1;
-#elif defined(WRONG_INSTANCES_PREPARED)
-    gene = spec.is_real() ? spec.low + (spec.high - spec.low) * prepared_ : 0;
-#elif defined(WRONG_CRASHING)
-    std::raise(SIGSEGV);
-#elif defined(WRONG_HIDDEN_STATE)
-    if (calls_in_this_process > 100) gene = spec.low;
-#elif defined(WRONG_SURROUNDINGS)
-    std::setlocale(LC_ALL, "C.UTF-8");
-#endif
+    if constexpr (fault == "same_seed") gene = static_cast<float>(std::random_device()() % 1000) / 1000;
+    if (fault == "threads" && !made_here) gene = spec.low;
+    if (fault == "batch" && calls_ > 3) gene = spec.low;
+    if constexpr (fault == "inputs") const_cast<evodevo::GeneSpec&>(spec).high *= 0.5F;
+    if (fault == "resuming" && calls_in_this_process > 5) gene = spec.draw(rng);
+    if constexpr (fault == "layout") gene = spec.high + 1;
+    if constexpr (fault == "instances_prepared")
+      gene = spec.is_real() ? spec.low + (spec.high - spec.low) * prepared_ : 0;
+    if constexpr (fault == "crashing") std::raise(SIGSEGV);
+    if (fault == "hidden_state" && calls_in_this_process > 100) gene = spec.low;
+    if constexpr (fault == "surroundings") std::setlocale(LC_ALL, "C.UTF-8");
   }
 };
 
-#endif
+template <class Kind>
+constexpr evodevo::OperatorEntry entry = evodevo::operator_entry<Kind>("wrong", "Breaks one rule.");
+
+/// Returns the operator of the kind whose rule is broken.
+constexpr evodevo::OperatorEntry wrong() {
+  const auto is_one_of = [](auto... faults) { return ((fault == faults) || ...); };
+  if constexpr (is_one_of("twins", "changes_crossover")) return entry<Crossover>;
+  if constexpr (fault.starts_with("decoding")) return entry<Encoding>;
+  if constexpr (fault.starts_with("bodies") || fault == "names_measure") return entry<Devo>;
+  if constexpr (is_one_of("translation", "nan_hidden", "objectives", "objectives_nan", "names_objective", "names_unit"))
+    return entry<Fitness>;
+  if constexpr (is_one_of("generations", "generations_note", "generations_children")) return entry<Generations>;
+  if constexpr (is_one_of("order_memory", "generations_memory")) return entry<Remembering>;
+  if constexpr (is_one_of("order", "elite", "failed")) return entry<Selection>;
+  return entry<Mutation>;
+}
 
 }  // namespace
 
-#if defined(WRONG_EXPORTS)
+/// Hidden unless the library lacks the version script that every plugin has.
 extern "C" __attribute__((visibility("default"), weak)) int another_export() { return 1; }  // as if inline
-#endif
 
-EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE,
-               evodevo::operator_entry<Wrong>("wrong", "Breaks one rule."))
+EVODEVO_PLUGIN(EVODEVO_PLUGIN_VERSION, EVODEVO_PLUGIN_LICENSE, wrong())

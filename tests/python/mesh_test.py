@@ -52,31 +52,29 @@ class Mesh(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "thickness"):
             mesh_of(point)
         self.assertEqual(len(mesh_of(point, 0.1)[1]), 2 * 20, "a spring without length has no prism")
-        alone = evodevo.Body.from_json({**BODY.json, "springs": []})
-        self.assertEqual(len(mesh_of(alone, 0.1)[1]), 4 * 20)
+        self.assertEqual(len(mesh_of(evodevo.Body.from_json({**BODY.json, "springs": []}), 0.1)[1]), 4 * 20)
 
     def test_files_hold_all_triangles(self):
         vertices, triangles, colours = mesh_of(BODY, 0.1)
-        with tempfile.TemporaryDirectory() as scratch:
-            for ending in ("ply", "obj", "stl"):
-                save_mesh(BODY, Path(scratch, f"robot.{ending}"), 0.1)
-            stl = Path(scratch, "robot.stl").read_bytes()
-            self.assertEqual(struct.unpack("<I", stl[80:84])[0], len(triangles))
-            self.assertEqual(len(stl), 84 + 50 * len(triangles))
-            first = np.frombuffer(stl, "<f4", 12, 84).reshape(4, 3)
-            np.testing.assert_allclose(first[1:], vertices[triangles[0]], atol=1e-6)
-            self.assertGreater(first[0] @ (first[1] - vertices[16]), 0, "the normal looks away from the axis")
-            header, data = Path(scratch, "robot.ply").read_bytes().split(b"end_header\n")
-            self.assertIn(f"element vertex {len(vertices)}\n".encode(), header)
-            self.assertEqual(len(data), 15 * len(vertices) + 13 * len(triangles))
-            np.testing.assert_array_equal(np.frombuffer(data[12:15], "u1"), colours[0])
-            obj = Path(scratch, "robot.obj").read_text().splitlines()
-            self.assertEqual(sum(line.startswith("v ") for line in obj), len(vertices))
-            corners = [int(word) for line in obj if line.startswith("f ") for word in line.split()[1:]]
-            self.assertEqual((min(corners), max(corners)), (1, len(vertices)))
-            with self.assertRaisesRegex(ValueError, "robot.glb.*.ply"):
-                save_mesh(BODY, Path(scratch, "robot.glb"))
+        scratch = self.enterContext(tempfile.TemporaryDirectory())
+        for ending in ("ply", "obj", "stl"):
+            save_mesh(BODY, Path(scratch, f"robot.{ending}"), 0.1)
+        stl = Path(scratch, "robot.stl").read_bytes()
+        self.assertEqual(struct.unpack("<I", stl[80:84])[0], len(triangles))
+        self.assertEqual(len(stl), 84 + 50 * len(triangles))
+        first = np.frombuffer(stl, "<f4", 12, 84).reshape(4, 3)
+        np.testing.assert_allclose(first[1:], vertices[triangles[0]], atol=1e-6)
+        self.assertGreater(first[0] @ (first[1] - vertices[16]), 0, "the normal looks away from the axis")
+        header, data = Path(scratch, "robot.ply").read_bytes().split(b"end_header\n")
+        self.assertIn(f"element vertex {len(vertices)}\n".encode(), header)
+        self.assertEqual(len(data), 15 * len(vertices) + 13 * len(triangles))
+        np.testing.assert_array_equal(np.frombuffer(data[12:15], "u1"), colours[0])
+        obj = Path(scratch, "robot.obj").read_text().splitlines()
+        self.assertEqual(sum(line.startswith("v ") for line in obj), len(vertices))
+        corners = [int(word) for line in obj if line.startswith("f ") for word in line.split()[1:]]
+        self.assertEqual((min(corners), max(corners)), (1, len(vertices)))
+        with self.assertRaisesRegex(ValueError, "robot.glb.*.ply"):
+            save_mesh(BODY, Path(scratch, "robot.glb"))
 
 
-if __name__ == "__main__":
-    unittest.main()
+unittest.main()

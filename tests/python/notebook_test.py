@@ -28,18 +28,15 @@ class Notebook(unittest.TestCase):
         self.assertGreater(len(plt.get_fignums()), 3)
 
     def test_figures_show_the_numbers_of_the_run(self):
-        with tempfile.TemporaryDirectory() as scratch:
-            run = evodevo.Run(make_run(scratch))
-            lines = figures.fitness(run).get_lines()
-            self.assertEqual(list(lines[0].get_xdata()), list(run.generations["evaluations"]))
-            self.assertEqual(list(lines[0].get_ydata()), list(run.generations["best"]))
-            self.assertEqual(len(figures.ages(run).get_lines()[0].get_xdata()), 6)
-            self.assertEqual(len(figures.ages(run, generation=0).get_lines()[0].get_xdata()), 6)
-            self.assertIn("body lengths", figures.lineage(run, run.best().index[0]).get_ylabel())
-            shown = run.body(0)
-            drawn = figures.body(shown).collections[0]
-            self.assertEqual(len(drawn.get_colors()), len(shown.springs))
+        run = evodevo.Run(make_run(self.enterContext(tempfile.TemporaryDirectory())))
+        lines = figures.fitness(run).get_lines()
+        self.assertEqual(list(lines[0].get_xdata()), list(run.generations["evaluations"]))
+        self.assertEqual(list(lines[0].get_ydata()), list(run.generations["best"]))
+        self.assertEqual(len(figures.ages(run).get_lines()[0].get_xdata()), 6)
+        self.assertEqual(len(figures.ages(run, generation=0).get_lines()[0].get_xdata()), 6)
+        self.assertIn("body lengths", figures.lineage(run, run.best().index[0]).get_ylabel())
+        shown = run.body(0)
+        self.assertEqual(len(figures.body(shown).collections[0].get_colors()), len(shown.springs))
 
 
-if __name__ == "__main__":
-    unittest.main()
+unittest.main()

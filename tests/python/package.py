@@ -5,46 +5,22 @@ import subprocess
 import sys
 from pathlib import Path
 
+from small_experiment import small_experiment
+
 ROOT = Path(__file__).resolve().parents[2]
 # the package with its compiled module, if there is one
 sys.path.insert(0, os.environ.get("EVODEVO_PYTHON", str(ROOT / "tools/python")))
 
-SMALL = """
-[experiment]
-seed = 7
-evaluations = 24
-population = 6
-[encoding]
-name = "ENCODING"
-[[mutation]]
-name = "MUTATION"
-[scene.gravity]
-[scene.floor]
-[scene.friction]
-[scene.damping]
-[development]
-cycles = 2
-cycle_time = 0.05
-[[development.operator]]
-name = "spring-turnover"
-springs = 2
+OBJECTIVE = """
 [[fitness]]
-name = "distance"
+name = "{}"
 settle = 0.05
 window = 0.1
-[[fitness]]
-name = "actuation-work"
-settle = 0.05
-window = 0.1
-[[fitness]]
-name = "descriptor"
-what = "height"
-range = [0.0, 1.0]
-settle = 0.05
-window = 0.1
-[selection]
-name = "age-fitness-pareto"
 """
+SMALL = small_experiment(development=True, evaluations="24\nseed = 7", population=6, size="[2, 2, 1]")
+SMALL = SMALL.replace("threads = 1\n", "")  # as many as there are cores
+SMALL += OBJECTIVE.format("actuation-work") + OBJECTIVE.format('descriptor"\nwhat = "height"\nrange = [0.0, 1.0]\n#')
+VOXELS = 'name = "voxel"\nsize = [2, 2, 1]\nedge = 0.5\n'
 
 
 def evodevo(*arguments):
@@ -53,9 +29,9 @@ def evodevo(*arguments):
     return subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
 
 
-def make_run(folder, encoding='voxel"\nsize = [2, 2, 1]\nedge = 0.5\n#"', mutation="reset-weight", options=()):
-    """Makes a small run in folder/run and returns its folder."""
+def make_run(folder, encoding=VOXELS, mutation="reset-weight", options=()):
+    """Makes a small run in folder/run and returns its folder. `encoding`: the text of that table."""
     file = Path(folder, "small.toml")
-    file.write_text(SMALL.replace("ENCODING", encoding).replace("MUTATION", mutation), encoding="utf-8")
+    file.write_text(SMALL.replace(VOXELS, encoding).replace("reset-weight", mutation), encoding="utf-8")
     evodevo("run", file, "--out", Path(folder, "run"), "--device", "cpu", "--no-report", "--quiet", *options)
     return Path(folder, "run")

@@ -51,15 +51,20 @@ class Rotations(unittest.TestCase):
             c, s = np.cos(angle), np.sin(angle)
             turned = cloud @ np.array([[1, 0, 0], [0, c, -s], [0, s, c]]).T + [0.2, 3, 1]
             self.assertAlmostEqual(analyses.rotation(cloud, turned), angle)
-        spun = cloud @ np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1]]).T
-        self.assertAlmostEqual(analyses.rotation(cloud, spun), 0)
+        self.assertAlmostEqual(analyses.rotation(cloud, cloud @ np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1]]).T), 0)
 
 
 class Lives(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        scratch = cls.enterClassContext(tempfile.TemporaryDirectory())
+        cls.runs = {name: make_run(name, scratch) for name in ("evo", "evo-devo")}
+        cls.run_ = analyses.evodevo.Run(cls.runs["evo-devo"])
+
     def test_are_those_of_the_runs(self):
-        for name in ("evo", "evo-devo"):
-            with self.subTest(name), tempfile.TemporaryDirectory() as scratch:
-                rows = analyses.lives_of_champion(make_run(name, scratch), 2)
+        for name, run in self.runs.items():
+            with self.subTest(name):
+                rows = analyses.lives_of_champion(run, 2)
                 lives = {life: distance for _, _, _, life, distance, *_ in rows}
                 # in steps of the same length, but with the length of a spring rounded in another way
                 self.assertAlmostEqual(lives["as it is"], lives["in the run"], places=4)
@@ -72,26 +77,24 @@ class Lives(unittest.TestCase):
                 self.assertEqual(len(rows), 1 + 1 + 3 + 2 * 2)
 
     def test_change_as_their_genes_say(self):
-        with tempfile.TemporaryDirectory() as scratch:
-            run = analyses.evodevo.Run(make_run("evo-devo", scratch))
-            genes, own, table = analyses.Genes(run, 3), run.genome(3), run.genes(3)
-            random = [genes.change(run.genome(i), kind) for i in run.individuals.index for kind in ("size", "phase")]
-            self.assertAlmostEqual(np.mean(random), 1 / 3, delta=0.03)
-            for kind, range_of_genes in (("size", 1.5), ("phase", 2.0)):
-                at_birth, at_the_end = (table[table["gene"] == f"{kind} {when}"]["value"].to_numpy()
-                                        for when in ("at birth", "at the end"))
-                self.assertAlmostEqual(genes.change(own, kind), np.mean(np.abs(at_the_end - at_birth)) / range_of_genes,
-                                       places=5)
-                self.assertEqual(genes.change(genes.at(own, 0.5), kind), 0)
+        run = self.run_
+        genes, own, table = analyses.Genes(run, 3), run.genome(3), run.genes(3)
+        random = [genes.change(run.genome(i), kind) for i in run.individuals.index for kind in ("size", "phase")]
+        self.assertAlmostEqual(np.mean(random), 1 / 3, delta=0.03)
+        for kind, range_of_genes in (("size", 1.5), ("phase", 2.0)):
+            at_birth, at_the_end = (table[table["gene"] == f"{kind} {when}"]["value"].to_numpy()
+                                    for when in ("at birth", "at the end"))
+            expected = np.mean(np.abs(at_the_end - at_birth)) / range_of_genes
+            self.assertAlmostEqual(genes.change(own, kind), expected, places=5)
+            self.assertEqual(genes.change(genes.at(own, 0.5), kind), 0)
 
     def test_mutants_differ_in_one_voxel(self):
-        with tempfile.TemporaryDirectory() as scratch:
-            run = analyses.evodevo.Run(make_run("evo-devo", scratch))
-            table, genes = run.genes(3), analyses.Genes(run, 3)
-            for kind in ("size", "phase"):
-                changed = table[genes.mutant(run.genome(3), kind, np.random.default_rng(2)) != run.genome(3)]
-                self.assertEqual(set(changed["gene"]), {f"{kind} at birth", f"{kind} at the end"})
-                self.assertEqual(changed["block"].nunique(), 1)
+        table, own = self.run_.genes(3), self.run_.genome(3)
+        for kind in ("size", "phase"):
+            mutant = analyses.Genes(self.run_, 3).mutant(own, kind, np.random.default_rng(2))
+            changed = table[mutant != own]
+            self.assertEqual(set(changed["gene"]), {f"{kind} at birth", f"{kind} at the end"})
+            self.assertEqual(changed["block"].nunique(), 1)
 
 
 class Progress(unittest.TestCase):
@@ -109,5 +112,4 @@ class Progress(unittest.TestCase):
         self.assertIn("evo: 1 runs of 6 to 6 generations, 0 robots failed, 24 lives", text.getvalue())
 
 
-if __name__ == "__main__":
-    unittest.main()
+unittest.main()

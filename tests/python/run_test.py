@@ -1,5 +1,6 @@
 """Tests the Python package: what it reads of a run is what the program says of it."""
 
+import contextlib
 import json
 import sqlite3
 import tempfile
@@ -9,8 +10,8 @@ from unittest import mock
 
 import numpy as np
 import pandas as pd
+from package import ROOT, make_run
 from package import evodevo as call
-from package import make_run
 
 import evodevo
 
@@ -20,14 +21,13 @@ connect = sqlite3.connect
 class OfASmallRun(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.scratch = tempfile.TemporaryDirectory()
-        cls.folder = make_run(cls.scratch.name)
+        cls.folder = make_run(cls.enterClassContext(tempfile.TemporaryDirectory()))
         cls.run_ = evodevo.Run(cls.folder)
         cls.shown = json.loads(call("show", cls.folder, "--json"))
 
-    @classmethod
-    def tearDownClass(cls):
-        cls.scratch.cleanup()
+    def make_run(self, *words, **options):
+        """Makes a small run for one test alone, and returns its folder."""
+        return make_run(self.enterContext(tempfile.TemporaryDirectory()), *words, **options)
 
     def test_has_the_experiment_with_every_default(self):
         self.assertEqual(self.run_.experiment["experiment"]["population"], 6)
@@ -53,32 +53,25 @@ class OfASmallRun(unittest.TestCase):
         self.assertTrue(self.run_.best(24)["distance"].is_monotonic_decreasing)
 
     def test_members_are_those_who_lived(self):
-        last = self.run_.members[self.run_.members["generation"] == 3]["individual"]
         living = self.run_.individuals[self.run_.individuals["died"].isna()]
-        self.assertEqual(set(last), set(living.index))
+        self.assertEqual(set(self.run_.members[self.run_.members["generation"] == 3]["individual"]), set(living.index))
 
     def test_genes_are_those_that_the_program_prints(self):
-        self.compare_genes(self.run_, self.folder, 5)
-
-    def compare_genes(self, run, folder, individual):
-        printed = json.loads(call("genes", folder, "--individual", individual, "--json"))
-        wanted = [(section["owner"], number, block["type"], name)
-                  for section in printed["sections"]
-                  for number, block in enumerate(section["blocks"]) for name in block["genes"]]
-        table = run.genes(individual)
-        self.assertEqual([tuple(row) for row in table[["section", "block", "type", "gene"]].to_numpy()], wanted)
-        np.testing.assert_array_equal(table["value"], run.genome(individual))
-        first = next(iter(printed["sections"][0]["blocks"][0]["genes"].values()))
-        if isinstance(first, float):
-            self.assertAlmostEqual(first, table["value"][0], places=6)
-
-    def test_genes_of_genomes_whose_blocks_come_and_go(self):
-        with tempfile.TemporaryDirectory() as scratch:
-            folder = make_run(scratch, "neat", "add-node")
-            run = evodevo.Run(folder)
-            youngest = run.individuals[run.individuals["made_by"] != "random"].index[-1]
-            self.compare_genes(run, folder, youngest)
-            self.assertNotEqual(len(run.genome(youngest)), len(run.genome(0)))
+        grown = self.make_run('name = "neat"\n', "add-node")  # whose blocks come and go
+        run = evodevo.Run(grown)
+        youngest = run.individuals[run.individuals["made_by"] != "random"].index[-1]
+        self.assertNotEqual(len(run.genome(youngest)), len(run.genome(0)))
+        for run, folder, individual in ((self.run_, self.folder, 5), (run, grown, youngest)):
+            printed = json.loads(call("genes", folder, "--individual", individual, "--json"))
+            wanted = [(section["owner"], number, block["type"], name)
+                      for section in printed["sections"]
+                      for number, block in enumerate(section["blocks"]) for name in block["genes"]]
+            table = run.genes(individual)
+            self.assertEqual([tuple(row) for row in table[["section", "block", "type", "gene"]].to_numpy()], wanted)
+            np.testing.assert_array_equal(table["value"], run.genome(individual))
+            first = next(iter(printed["sections"][0]["blocks"][0]["genes"].values()))
+            if isinstance(first, float):
+                self.assertAlmostEqual(first, table["value"][0], places=6)
 
     def test_a_lineage_ends_with_a_founder(self):
         line = self.run_.lineage(self.run_.individuals["parent"].last_valid_index())
@@ -116,55 +109,48 @@ class OfASmallRun(unittest.TestCase):
         self.assertLess(np.abs(positions[0] - positions[1]).max(), 0.05)
 
     def test_motion_of_a_run_with_files_and_another_device(self):
-        with tempfile.TemporaryDirectory() as scratch:
-            Path(scratch, "points.obj").write_text("".join(f"v {x} {y} {z}\n" for x in (0, 0.5, 1) for y in (0, 0.4)
-                                                           for z in (0, 0.7)), encoding="utf-8")
-            folder = make_run(scratch, 'cloud"\nfile = "points.obj"\n#"')
-            with sqlite3.connect(folder / "run.sqlite") as connection:
-                connection.execute("UPDATE record SET value = replace(value, \"device = 'cpu'\", \"device = 'cuda'\") "
-                                   "WHERE key = 'experiment'")
-            Path(scratch, "points.obj").unlink()
-            run = evodevo.Run(folder)
-            self.assertIn("device = 'cuda'", run.record["experiment"])
-            times, positions = run.motion(run.best().index[0], 0.05)
-            self.assertEqual(positions.shape[1:], (12, 3))
+        scratch = self.enterContext(tempfile.TemporaryDirectory())
+        Path(scratch, "points.obj").write_text("".join(f"v {x} {y} {z}\n" for x in (0, 0.5, 1) for y in (0, 0.4)
+                                                       for z in (0, 0.7)), encoding="utf-8")
+        folder = make_run(scratch, 'name = "cloud"\nfile = "points.obj"\n')
+        with sqlite3.connect(folder / "run.sqlite") as connection:
+            connection.execute("UPDATE record SET value = replace(value, \"device = 'cpu'\", \"device = 'cuda'\") "
+                               "WHERE key = 'experiment'")
+        Path(scratch, "points.obj").unlink()
+        run = evodevo.Run(folder)
+        self.assertIn("device = 'cuda'", run.record["experiment"])
+        times, positions = run.motion(run.best().index[0], 0.05)
+        self.assertEqual(positions.shape[1:], (12, 3))
 
     def test_what_is_read_at_different_times_fits_together(self):
-        with tempfile.TemporaryDirectory() as scratch:
-            folder = make_run(scratch)
-            run = evodevo.Run(folder)
-            run.__dict__["individuals"] = run.individuals.head(20)  # as it was a generation before
-            line = run.lineage(23)
-            self.assertEqual(line.index[0], 23)
-            self.assertTrue(pd.isna(line["born"].iloc[0]))
+        run = evodevo.Run(self.folder)
+        run.__dict__["individuals"] = run.individuals.head(20)  # as it was a generation before
+        line = run.lineage(23)
+        self.assertEqual(line.index[0], 23)
+        self.assertTrue(pd.isna(line["born"].iloc[0]))
 
     def test_columns_of_equal_names_have_numbers(self):
-        with tempfile.TemporaryDirectory() as scratch:
-            folder = make_run(scratch)
-            with sqlite3.connect(folder / "run.sqlite") as connection:
-                connection.execute("UPDATE objectives SET name = 'born'")
-                connection.execute("UPDATE measures SET name = 'born'")
-            run = evodevo.Run(folder)
-            self.assertEqual(run.objective_columns, ["born_1", "born_2"])
-            self.assertIn("born_3", run.individuals)
-            np.testing.assert_array_equal(run.individuals["born_1"], self.run_.individuals["distance"])
-            self.assertEqual(list(run.best(3).index), list(self.run_.best(3).index))
+        folder = self.make_run()
+        with sqlite3.connect(folder / "run.sqlite") as connection:
+            connection.execute("UPDATE objectives SET name = 'born'")
+            connection.execute("UPDATE measures SET name = 'born'")
+        run = evodevo.Run(folder)
+        self.assertEqual(run.objective_columns, ["born_1", "born_2"])
+        self.assertIn("born_3", run.individuals)
+        np.testing.assert_array_equal(run.individuals["born_1"], self.run_.individuals["distance"])
+        self.assertEqual(list(run.best(3).index), list(self.run_.best(3).index))
 
     def test_a_file_in_use_is_not_called_damaged(self):
-        with tempfile.TemporaryDirectory() as scratch:
-            folder = make_run(scratch, options=("--journal", "delete"))
-            writer = sqlite3.connect(folder / "run.sqlite", isolation_level=None)
+        folder = self.make_run(options=("--journal", "delete"))
+        with contextlib.closing(sqlite3.connect(folder / "run.sqlite", isolation_level=None)) as writer:
             writer.execute("BEGIN EXCLUSIVE")
             with mock.patch("sqlite3.connect", lambda *a, **k: connect(*a, timeout=0, **k)):
                 with self.assertRaisesRegex(evodevo.ArchiveError, "locked; try again"):
                     evodevo.Run(folder)
-            writer.execute("ROLLBACK")
-            writer.close()
 
     def test_verifications_and_queries(self):
         self.assertEqual(self.run_.verifications["trial"].iloc[0], "again")
-        counted = self.run_.query("SELECT count(*) AS n FROM individuals WHERE born = ?", 0)["n"][0]
-        self.assertEqual(counted, 6)
+        self.assertEqual(self.run_.query("SELECT count(*) AS n FROM individuals WHERE born = ?", 0)["n"][0], 6)
 
     def test_what_is_not_there_is_named(self):
         with self.assertRaisesRegex(evodevo.ArchiveError, "999.*0 to 23"):
@@ -178,27 +164,20 @@ class OfASmallRun(unittest.TestCase):
                 self.run_.body(0)
 
     def test_another_format_is_refused(self):
-        with tempfile.TemporaryDirectory(prefix="odd #name? %41 ") as scratch:
-            folder = make_run(scratch)
-            self.assertEqual(len(evodevo.Run(folder).generations), 4)
-            with sqlite3.connect(folder / "run.sqlite") as connection:
-                connection.execute("UPDATE record SET value = '1' WHERE key = 'format'")
-            with self.assertRaisesRegex(evodevo.ArchiveError, "format 1, .*13"):
-                evodevo.Run(folder)
-            (folder / "run.sqlite").write_bytes(b"no database" * 500)
-            with self.assertRaisesRegex(evodevo.ArchiveError, "run.sqlite"):
-                evodevo.Run(folder)
+        folder = make_run(self.enterContext(tempfile.TemporaryDirectory(prefix="odd #name? %41 ")))
+        self.assertEqual(len(evodevo.Run(folder).generations), 4)
+        with sqlite3.connect(folder / "run.sqlite") as connection:
+            connection.execute("UPDATE record SET value = '1' WHERE key = 'format'")
+        with self.assertRaisesRegex(evodevo.ArchiveError, "format 1, .*13"):
+            evodevo.Run(folder)
+        (folder / "run.sqlite").write_bytes(b"no database" * 500)
+        with self.assertRaisesRegex(evodevo.ArchiveError, "run.sqlite"):
+            evodevo.Run(folder)
 
-    def test_the_format_and_the_version_are_those_of_the_program(self):
-        from evodevo import run as module
-
-        root = Path(__file__).resolve().parents[2]
-        schema = (root / "framework/evolution/archive/README.md").read_text(encoding="utf-8")
-        self.assertIn(f"this page describes format {module.FORMAT}.", " ".join(schema.split()))
+    def test_the_version_is_that_of_the_program(self):
         self.assertEqual(call("--version").split()[1], evodevo.__version__)
         self.assertIn(f'version = "{evodevo.__version__}"',
-                      (root / "tools/python/pyproject.toml").read_text(encoding="utf-8"))
+                      (ROOT / "tools/python/pyproject.toml").read_text(encoding="utf-8"))
 
 
-if __name__ == "__main__":
-    unittest.main()
+unittest.main()

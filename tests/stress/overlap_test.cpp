@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <numeric>
+
+#include "support/scratch.hpp"
 
 namespace evodevo::tools::stress::EVODEVO_FILE {
 namespace {
@@ -94,15 +94,12 @@ TEST(Overlap, TheSceneOfTheFirstIsThereWithStillMuscles) {
   EXPECT_EQ(all[2].scene, "walk, muscles still");
   EXPECT_EQ(all[2].experiment, "a/walk.toml");
   EXPECT_TRUE(all[2].muscles_still);
-}
-
-TEST(Overlap, ScenesThatCouldNotBeToldApartAreRefused) {
-  EXPECT_THROW(cases({"a/evo.toml", "b/evo.toml"}), std::invalid_argument);
+  EXPECT_THROW(cases({"a/evo.toml", "b/evo.toml"}), std::invalid_argument) << "scenes that could not be told apart";
 }
 
 TEST(Overlap, RandomRobotsGiveEveryTime) {
-  const std::string file = ::testing::TempDir() + "stress-study.toml";
-  std::ofstream(file) << R"(
+  const evodevo::testing::Scratch scratch;
+  const std::string file = scratch.write("swim.toml", R"(
 [experiment]
 [encoding]
 name = "neural"
@@ -114,14 +111,13 @@ name = "reset-weight"
 name = "distance"
 [selection]
 name = "elitist"
-)";
+)");
   const auto robots = simulate({"swim", file}, 1, "cpu");
   ASSERT_EQ(robots.size(), 1u);
   ASSERT_EQ(robots[0].size(), cycle_times().size());
   for (const auto& stress : robots[0]) EXPECT_EQ(stress.size(), robots[0][0].size());
   EXPECT_GE(robots[0][0].size(), 1250u);
   EXPECT_NE(robots[0].front(), robots[0].back());
-  std::filesystem::remove(file);
 }
 
 }  // namespace

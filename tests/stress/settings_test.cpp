@@ -11,24 +11,18 @@ namespace {
 
 using ::testing::ElementsAre;
 
-TEST(StressSettings, NameTheCommandThatRepeatsThem) {
+TEST(StressSettings, AreReadAndNameTheCommandThatRepeatsThem) {
   const Settings settings = parse({"charts", "a.toml", "b.toml", "--quick", "--device", "cpu"});
   EXPECT_EQ(settings.command, "tools/stress charts a.toml b.toml --quick --device cpu");
   EXPECT_EQ(settings.folder, "charts");
   EXPECT_THAT(settings.experiments, ElementsAre("a.toml", "b.toml"));
   EXPECT_EQ(settings.robots, 4u);
-}
-
-TEST(StressSettings, HaveDefaults) {
-  const Settings settings = parse({"charts"});
-  EXPECT_THAT(settings.experiments, ElementsAre("experiments/evo-devo.toml", "experiments/swimmer.toml"));
-  EXPECT_EQ(settings.robots, 100u);
-}
-
-TEST(StressSettings, RefuseWhatCannotBeStudied) {
-  EXPECT_THROW(parse({"a.toml"}), std::invalid_argument);
-  EXPECT_THROW(parse({"charts", "--robots", "0"}), std::invalid_argument);
-  EXPECT_THROW(parse({"charts", "--robots", "-1"}), std::invalid_argument);
+  const Settings standard = parse({"charts"});
+  EXPECT_THAT(standard.experiments, ElementsAre("experiments/evo-devo.toml", "experiments/swimmer.toml"));
+  EXPECT_EQ(standard.robots, 100u);
+  for (const CommandLine& line :
+       {CommandLine{"a.toml"}, CommandLine{"charts", "--robots", "0"}, CommandLine{"charts", "--robots", "-1"}})
+    EXPECT_THROW(parse(line), std::invalid_argument);
 }
 
 TEST(StressSettings, AreDescribedByTheHelp) {

@@ -64,6 +64,19 @@ inline Experiment read(const std::string& text, std::vector<Override> overrides 
   return read_experiment(text, {"test.toml", std::move(overrides)});
 }
 
+/// Returns values of keys, as --set takes them: "key=value".
+inline std::vector<Override> overrides(const std::vector<std::string>& values) {
+  std::vector<Override> all;
+  for (const std::string& value : values)
+    all.push_back({value.substr(0, value.find('=')), value.substr(value.find('=') + 1), ""});
+  return all;
+}
+
+/// The small experiment with values of keys, as --set takes them.
+inline Experiment small(const std::vector<std::string>& values = {}) {
+  return read(small_experiment, overrides(values));
+}
+
 /// Returns the values, as --set takes them, that make two small and short generations of an experiment.
 inline std::vector<std::string> shrinking(const std::string& file) {
   std::vector<std::string> values = {"experiment.population=8", "experiment.children=8", "experiment.evaluations=16",

@@ -9,6 +9,7 @@
 
 #include "evolution/islands/island_folders.hpp"
 #include "evolution/islands/island_runs.hpp"
+#include "support/changed.hpp"
 #include "support/experiments.hpp"
 #include "support/runs.hpp"
 #include "support/scratch.hpp"
@@ -17,11 +18,8 @@ namespace evodevo::testing {
 
 /// The small experiment as three islands of five individuals, one of which has its own selection, and one its own
 /// mutation and seed. Each makes seven generations; individuals migrate after those with odd numbers.
-inline const std::string small_islands = [] {
-  std::string text = small_experiment;
-  const std::string before = "evaluations = 24\npopulation = 6\n";
-  text.replace(text.find(before), before.size(), "evaluations = 104\npopulation = 5\n");
-  return text + R"(
+inline const std::string small_islands =
+    small_with({{"evaluations = 24\npopulation = 6\n", "evaluations = 104\npopulation = 5\n"}}) + R"(
 [islands]
 count = 3
 every = 2
@@ -38,7 +36,6 @@ seed = 41
 name = "reset-weight"
 probability = 0.35
 )";
-}();
 
 inline std::vector<Experiment> read_islands(const Scratch& scratch, const std::string& text,
                                             std::vector<Override> overrides = {}) {

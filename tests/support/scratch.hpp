@@ -10,6 +10,12 @@
 
 namespace evodevo::testing {
 
+/// Returns all bytes of a file.
+inline std::string content_of(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
 /// A new empty folder, which is removed with its contents when the object is destroyed.
 class Scratch {
  public:

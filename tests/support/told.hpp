@@ -13,6 +13,8 @@
 
 #include "life/evaluation.hpp"
 #include "support/experiments.hpp"
+#include "support/lives.hpp"
+#include "support/refusals.hpp"
 
 namespace evodevo::testing {
 
@@ -47,33 +49,25 @@ inline std::unique_ptr<Simulator> simulator_for(const Experiment& experiment, in
 inline Life matured(const Experiment& experiment, std::optional<LifeRecord> record = std::nullopt) {
   static const Genome genome = {1, 2};
   const Newborn newborn{0, 0, &genome, std::move(record)};
-  const auto simulator = simulator_for(experiment);
-  const Evaluation evaluation(experiment, *simulator);
-  std::vector<Life> lives = evaluation.birth.of({&newborn, 1});
-  evaluation.development.run(lives, unwatched);
-  EXPECT_EQ(lives.front().result.status, Status::ok) << lives.front().result.reason;
-  return std::move(lives.front());
+  Life life = std::move(Developed(experiment, {&newborn, 1}, 1).lives.front());
+  EXPECT_EQ(life.result.status, Status::ok) << life.result.reason;
+  return life;
 }
 
 inline std::string error_of(const Experiment& experiment) {
-  try {
-    matured(experiment);
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "none";
+  return refusal<std::runtime_error>([&] { matured(experiment); });
 }
 
 inline std::vector<double> numbers_of(std::span<const double> record) { return {record.begin(), record.end()}; }
 
 /// Joins a new mass to the first two masses.
 inline void add_mass(const DevoContext& context, Edits& edits) {
-  const auto mass = static_cast<std::uint32_t>(context.body.masses.size() + edits.new_masses.size());
+  const auto newest = static_cast<std::uint32_t>(context.body.masses.size() + edits.new_masses.size());
   const Box& box = context.bounds;
   const double part = 0.3 + 0.1 * static_cast<double>(edits.new_masses.size());
   edits.new_masses.push_back({box.low + part * (box.high - box.low), context.mass, 0});
-  edits.new_springs.push_back({0, mass, {10000, 0, 0, 0}, {}});
-  edits.new_springs.push_back({1, mass, {10000, 0, 0, 0}, {}});
+  edits.new_springs.push_back({0, newest, {10000, 0, 0, 0}, {}});
+  edits.new_springs.push_back({1, newest, {10000, 0, 0, 0}, {}});
 }
 
 inline constexpr RecordRequest all_of_masses{.contact = true, .age = true, .degree = true, .load = true};

@@ -75,8 +75,7 @@ class Ranges(unittest.TestCase):
         for text in ("a=0.013..130.0:log", "a=2..2000:log"):
             parameter = parse_range(text)
             values = numpy.array(drawn(parameter), dtype=float)
-            middle = (parameter.low * parameter.high) ** 0.5
-            self.assertAlmostEqual((values < middle).mean(), 0.5, delta=0.05)
+            self.assertAlmostEqual((values < (parameter.low * parameter.high) ** 0.5).mean(), 0.5, delta=0.05)
             self.assertTrue(parameter.low <= values.min() <= values.max() <= parameter.high)
 
     def test_values_near_a_parent(self):
@@ -94,5 +93,4 @@ class Ranges(unittest.TestCase):
         self.assertEqual([categories.find(value) for value in (1, True, "x", 1.0, None)], ["1", "true", '"x"', None, None])
 
 
-if __name__ == "__main__":
-    unittest.main()
+unittest.main()

@@ -1,12 +1,16 @@
-"""Tests races over synthetic scores."""
+"""Tests races over synthetic scores: which configurations drop out, what is left, and the main effects of keys."""
 
+import collections
 import math
 import unittest
 
 import numpy
+from scipy import stats
 
+from tune.effects import effects, shares_beaten
+from tune.race import clearly_worse, mean_ranks
 from tune.ranges import parse_range
-from tune.tuning import Tuning, iterations_for, smallest_budget
+from tune.tuning import Configuration, Tuning, iterations_for, smallest_budget
 
 REAL, NAMES = parse_range("a.real=0.0..10.0"), parse_range("a.name=good,bad,worse")
 LOSS = {'"good"': 0.0, '"bad"': 3.0, '"worse"': 6.0}
@@ -56,35 +60,23 @@ def race_on_the_hill(budget=400, **more):
 
 
 class Races(unittest.TestCase):
-    def test_a_known_best_is_found(self):
-        best = race_on_the_hill().tuning.ranked[0]
+    def test_a_known_best_is_found_near_which_later_configurations_lie_and_the_experiment_drops(self):
+        tuning = race_on_the_hill().tuning
+        best, own = tuning.ranked[0], tuning.configurations[0]
         self.assertAlmostEqual(float(best.values[0]), 7.3, delta=0.8)
         self.assertEqual(best.values[1], '"good"')
-
-    def test_later_configurations_lie_nearer_to_the_best(self):
-        configurations = race_on_the_hill().tuning.configurations
-        last = max(each.iteration for each in configurations)
-        distance = {
-            i: numpy.mean([abs(float(each.values[0]) - 7.3) for each in configurations if each.iteration == i])
-            for i in (1, last)
-        }
-        self.assertLess(distance[last], distance[1] / 2)
-
-    def test_the_experiment_is_the_first_configuration_and_drops_if_it_is_clearly_worse(self):
-        own = race_on_the_hill().tuning.configurations[0]
         self.assertTrue(own.is_own)
         self.assertEqual((own.values, own.fate), (("1.5", '"bad"'), "dropped"))
         self.assertLess(len(own.scores), 10)
+        distance = collections.defaultdict(list)
+        for each in tuning.configurations:
+            distance[each.iteration].append(abs(float(each.values[0]) - 7.3))
+        self.assertLess(numpy.mean(distance[max(distance)]), numpy.mean(distance[1]) / 2)
 
     def test_an_experiment_that_is_best_stays(self):
         own = ("7.3", '"good"')
         tuning = Race(lambda values, seed: hill(values, seed) + 2 * (values == own), [REAL, NAMES], 200, own).tuning
         self.assertTrue(tuning.ranked[0].is_own)
-
-    def test_ties_do_not_drop(self):
-        tuning = Race(flat, [REAL], 60, ("3.0",)).tuning
-        self.assertEqual({each.fate for each in tuning.configurations}, {"left", "outranked"})
-        self.assertTrue(tuning.ranked[0].is_own)  # of equals, the experiment stays as it is
 
     def test_the_budget_is_never_exceeded_and_no_run_is_made_twice(self):
         for parameters, own in (([REAL], ("1.0",)), ([REAL, NAMES], ("1.0", '"bad"')), ([REAL] * 5, ("1.0",) * 5)):
@@ -110,6 +102,8 @@ class Races(unittest.TestCase):
         self.assertEqual(sum(each.fate == "outranked" for each in tuning.configurations), sum(i.left - 3 for i in before))
         self.assertEqual(len(tuning.ranked), last.left)
         self.assertGreater(last.left, 3)
+        self.assertEqual({each.fate for each in tuning.configurations}, {"left", "outranked"})  # ties do not drop
+        self.assertTrue(tuning.ranked[0].is_own)  # of equals, the experiment stays as it is
 
     def test_the_same_scores_give_the_same_race(self):
         self.assertEqual(race_on_the_hill().summary(), race_on_the_hill().summary())
@@ -124,8 +118,7 @@ class Races(unittest.TestCase):
         self.assertEqual(race.tuning.ranked[0].values[1], '"good"')
         self.assertEqual(race.tuning.configurations[0].scores[:5], [-math.inf] * 5)
         self.assertEqual(race.tuning.configurations[0].fate, "dropped")
-        hopeless = Race(lambda values, seed: math.nan, [REAL], 60, ("3.0",)).tuning
-        self.assertTrue(hopeless.ranked[0].is_own)
+        self.assertTrue(Race(lambda values, seed: math.nan, [REAL], 60, ("3.0",)).tuning.ranked[0].is_own)
 
     def test_what_is_refused_costs_nothing_and_is_replaced(self):
         race = race_on_the_hill(accept=lambda values: float(values[0]) < 4)
@@ -153,5 +146,72 @@ class Races(unittest.TestCase):
         self.assertGreater(float(race.tuning.ranked[0].values[0]), 9)
 
 
-if __name__ == "__main__":
-    unittest.main()
+class Drops(unittest.TestCase):
+    def test_the_worst_of_many_drops(self):
+        scores = [[3.1 + seed, 2.9 + seed * 1.1, 0.2 + seed] for seed in range(7)]
+        scores[3][0], scores[3][1] = scores[3][1], scores[3][0]
+        self.assertEqual(clearly_worse(scores).tolist(), [False, False, True])
+
+    def test_ties_do_not_drop(self):
+        for value in (1.7, math.inf, -math.inf):
+            for configurations in (2, 5):
+                self.assertFalse(clearly_worse(numpy.full((9, configurations), value)).any())
+
+    def test_infinite_scores_are_the_worst(self):
+        scores = [[1.3 + seed, 1.4 + seed + (-1) ** seed, -math.inf] for seed in range(6)]
+        self.assertEqual(clearly_worse(scores).tolist(), [False, False, True])
+        self.assertEqual(clearly_worse([[-math.inf, 0.1 * seed] for seed in range(7)]).tolist(), [True, False])
+        self.assertEqual(mean_ranks(scores)[2], 3)
+
+    def test_of_two_the_worse_drops_from_the_smallest_number_of_seeds_that_shows_it(self):
+        better = [[0.5 * seed + 1.01**seed, 0.5 * seed] for seed in range(6)]
+        self.assertEqual(clearly_worse(better).tolist(), [False, True])
+        self.assertFalse(clearly_worse(better[:5]).any())  # the smallest p of five seeds is 1/16
+
+    def test_the_test_of_many_is_that_of_scipy(self):
+        random = numpy.random.default_rng(23)
+        # scores of whole numbers have ties; Friedman's test decides whether anything drops
+        for _ in range(200):
+            scores = random.integers(0, 4, (7, 4)) + [0, 0, 0, 1]
+            if stats.friedmanchisquare(*scores.T).pvalue >= 0.05:
+                self.assertFalse(clearly_worse(scores).any())
+            else:
+                self.assertTrue(clearly_worse(scores)[mean_ranks(scores).argmax()])
+
+
+NUMBER, LETTER = parse_range("a=0.0..9.0"), parse_range("b=x,y")
+
+
+def tried(values, score):
+    return Configuration(1, values, 1, scores=[score + seed for seed in range(6)])
+
+
+class Effects(unittest.TestCase):
+    def test_the_share_of_others_that_are_beaten(self):
+        shares = shares_beaten([tried((), 3.5), tried((), -math.inf), tried((), 0.25), tried((), 3.5)])
+        self.assertEqual([round(share, 6) for share in shares], [round(5 / 6, 6), 0, round(1 / 3, 6), round(5 / 6, 6)])
+
+    def test_a_key_that_decides_all_and_one_that_decides_nothing(self):
+        configurations = [
+            tried((str(float(i)), '"x"' if i % 2 else '"y"'), 0.1 * (i // 2)) for i in range(10) for _ in range(2)
+        ]
+        decides, not_so = effects([NUMBER, LETTER], configurations, lambda each: each.values)
+        self.assertEqual([level.name.split(":")[0] for level in decides.levels], ["low", "middle", "high"])
+        self.assertEqual(sum(len(level.shares) for level in decides.levels), 20)
+        self.assertGreater(decides.size, 0.6)
+        self.assertGreater(decides.interval[0], 0.4)
+        self.assertAlmostEqual(not_so.size, 0)
+        self.assertLess(not_so.interval[0], 0)
+        self.assertGreater(not_so.interval[1], 0)
+
+    def test_unknown_values_and_lonely_levels(self):
+        configurations = [tried((None, '"x"'), 7.0), tried(("2.5", '"x"'), 1.0), tried(("2.5", '"y"'), 2.0)]
+        number, name = effects([NUMBER, LETTER], configurations, lambda each: each.values)
+        self.assertEqual((len(number.levels), number.size, number.interval), (1, None, None))
+        self.assertEqual([len(level.shares) for level in name.levels], [2, 1])
+        self.assertIsNotNone(name.size)
+        self.assertIsNone(name.interval)
+        self.assertEqual(effects([NUMBER], [Configuration(1, ("1.0",), 1)], lambda each: each.values), [])
+
+
+unittest.main()

@@ -1,27 +1,16 @@
 // The best robot over the generations, as a strip of pictures.
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
-import { archived, evodevo, inPage, launch, opened, Scratch, until } from "./support.mjs";
+import { before, test } from "node:test";
+import { archived, closed, evodevo, inPage, opened, ran, reported, scratch, until } from "./support.mjs";
 
-const scratch = new Scratch();
-const report = scratch.path("report.html");
-let browser, page, expected;
+let page, expected;
 
 before(async () => {
-  evodevo("run", scratch.file, "--out", scratch.run, "--set", "experiment.verify=0", "--set", "experiment.evaluations=132");
-  evodevo("report", scratch.run, "--best", "1", "--out", report);
-  browser = await launch();
-  page = await opened(browser, report);
-  const born = archived(
-    scratch.run,
-    "SELECT id, born, value FROM individuals JOIN scores ON individual = id WHERE objective = 0 AND status = 'ok' ORDER BY born, value DESC, id",
-  );
+  page = await opened(reported(ran("run", ["experiment.verify=0", "experiment.evaluations=132"]), "--best", "1"));
+  const born = archived(scratch.run,
+    "SELECT id, born, value FROM individuals JOIN scores ON individual = id WHERE objective = 0 AND status = 'ok' ORDER BY born, value DESC, id");
   // the best of each generation, if no earlier one was as good
   expected = born.filter(([, generation, value], i) => born.slice(0, i).every((other) => other[1] < generation && other[2] < value));
-});
-after(async () => {
-  await browser?.close();
-  scratch.remove();
 });
 
 const buttons = () => page.locator(".champions button");
@@ -63,18 +52,15 @@ test("a robot on the page opens, with the keyboard too; of another it says how t
 });
 
 test("where the best changed often, the strip has 40 of its robots, and says of how many", async () => {
-  const [run, file] = [scratch.path("often"), scratch.path("often.html")];
-  const settings = ["experiment.verify=0", "experiment.evaluations=540", "development.cycles=0"];
-  evodevo("run", scratch.file, "--out", run, ...settings.flatMap((setting) => ["--set", setting]));
+  const run = ran("often", ["experiment.verify=0", "experiment.evaluations=540", "development.cycles=0"]);
   archived(run, "UPDATE scores SET value = individual"); // now each generation has a new best robot
   const best = archived(run, "SELECT max(id) FROM individuals WHERE status = 'ok' GROUP BY born ORDER BY born").map(([id]) => id);
   assert.ok(best.length > 40, `${best.length}`);
-  evodevo("report", run, "--best", "1", "--out", file);
-  const tab = await opened(browser, file);
+  const tab = await opened(reported(run, "--best", "1"));
   const ids = (await tab.locator(".champions button").allTextContents()).map((text) => Number(/individual (\d+)/.exec(text)[1]));
   assert.equal(ids.length, 40);
   assert.deepEqual([ids[0], ids.at(-1)], [best[0], best.at(-1)]);
   assert.deepEqual(ids, best.filter((id) => ids.includes(id)));
   assert.match(await tab.locator(".champions .note").textContent(), new RegExp(`40 of ${best.length}\\b`));
-  await tab.close();
+  await closed(tab);
 });

@@ -1,21 +1,20 @@
 // The report's page of runs with a map of niches, and with what selection notes about individuals.
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
-import { after, before, test } from "node:test";
-import { evodevo, inPage, launch, opened, Scratch, until, writeChanged } from "./support.mjs";
+import { before, test } from "node:test";
+import { closed, inPage, onPhone, opened, ran, reported, scratch, until, writeChanged } from "./support.mjs";
 
-const scratch = new Scratch();
 const bold = "<b>reach</b>"; // would be bold if it were interpreted as markup
 const proto = "__proto__"; // would be lost, or do harm, if it were a key of an ordinary object
 const filmed = 9000; // the first of the elites that have a robot on the page
 const unfilmed = 777;
-let browser, page, report;
+let page, report;
 
 /** Writes a page with the data of another one, as changed by a function, and opens it. */
-async function changed(name, change, options) {
+async function changed(name, change, open = opened) {
   const file = scratch.path(`${name}.html`);
   writeChanged(report, file, (data) => ({ ...data, runs: change(data.runs[0]) }));
-  return opened(browser, file, options);
+  return open(file);
 }
 
 /** Elites by column, row (from the bottom), individual and value. The robots of `filmed` and of the next individual are
@@ -38,17 +37,11 @@ function mapped(run) {
   return {
     ...run,
     map: { objective: run.objectives[0].name, axes, cells: 12, elites: elitesOf(run.robots[0].individual) },
-    notes: [
-      { name: proto, unit: "1", is_label: false },
-      { name: bold, unit: "1", is_label: true },
-    ],
+    notes: [proto, bold].map((name) => ({ name, unit: "1", is_label: name === bold })),
     labels: [
       {
         name: bold,
-        groups: [
-          { label: 1234567, counts: growing },
-          { label: 2, counts: growing.map((n) => 2 * n) },
-        ],
+        groups: [{ label: 1234567, counts: growing }, { label: 2, counts: growing.map((n) => 2 * n) }],
         others: growing.map(() => 3),
       },
     ],
@@ -62,15 +55,8 @@ function mapped(run) {
 }
 
 before(async () => {
-  report = scratch.path("report.html");
-  evodevo("run", scratch.file, "--out", scratch.run);
-  evodevo("report", scratch.run, "--out", report);
-  browser = await launch();
+  report = reported(ran("run", ["experiment.verify=0"]));
   page = await changed("mapped", (run) => [mapped(run)]);
-});
-after(async () => {
-  await browser?.close();
-  scratch.remove();
 });
 
 const figure = (title) => page.locator("figure", { has: page.locator("figcaption", { hasText: title }) });
@@ -112,8 +98,7 @@ test("axes have names, units and values at borders of cells; a name is never mar
 });
 
 test("the colours go from the lowest to the highest value, which the legend states", async () => {
-  const legend = await page.locator(".niches .bar-of-colours span").allTextContents();
-  assert.deepEqual(legend, ["-1", "1 body lengths"]);
+  assert.deepEqual(await page.locator(".niches .bar-of-colours span").allTextContents(), ["-1", "1 body lengths"]);
   const colour = (individual) => niche(individual).locator("i").evaluate((i) => getComputedStyle(i).backgroundColor);
   const bar = await page.locator(".niches .bar-of-colours .scale").evaluate((i) => getComputedStyle(i).backgroundImage);
   const stops = bar.match(/rgb\([^)]*\)/g);
@@ -162,40 +147,25 @@ test("robots chosen elsewhere are outlined in the map", async () => {
   assert.equal(await outlined(), 0);
 });
 
-test("a robot without a film is told with the command that films it", async () => {
-  await pick(await best());
-  await niche(unfilmed).click();
-  const command = await page.locator(".niches .note code").textContent();
-  assert.equal(command, `evodevo report ${scratch.run} --individual ${unfilmed}`);
-  await inPage(page, () => {});
-  assert.equal(await inPage(page, ({ viewer }) => viewer.chosen[0]), 0);
-});
-
 test("the keyboard reaches every cell, and opens its robot", async () => {
   await pick(await best());
   await inPage(page, ({ viewer }) => viewer.seek(1));
   assert.equal(await page.locator('.niche[tabindex="0"]').count(), 1);
   await page.locator('.niche[tabindex="0"]').focus();
   const focused = async () => {
-    const name = await page.evaluate(() => document.activeElement.ariaLabel);
-    return Number(/individual (\d+)/.exec(name)[1]);
+    return Number(/individual (\d+)/.exec(await page.evaluate(() => document.activeElement.ariaLabel))[1]);
   };
   const first = await best();
   assert.equal(await focused(), first);
-  for (const [key, individual] of [
-    ["ArrowLeft", first], // there is none before it
-    ["ArrowRight", filmed + 1],
-    ["ArrowRight", filmed],
-    ["ArrowRight", unfilmed],
-    ["ArrowRight", unfilmed],
-    ["ArrowUp", filmed + 1],
-    ["ArrowUp", filmed + 1],
-    ["ArrowLeft", first],
-    ["ArrowDown", filmed],
-    ["ArrowDown", filmed],
-    ["ArrowUp", first],
-  ]) {
-    await page.keyboard.press(key);
+  for (const [key, ...reached] of [
+    ["Left", first], // there is none before it
+    ["Right", filmed + 1, filmed, unfilmed, unfilmed],
+    ["Up", filmed + 1, filmed + 1],
+    ["Left", first],
+    ["Down", filmed, filmed],
+    ["Up", first],
+  ]) for (const individual of reached) {
+    await page.keyboard.press(`Arrow${key}`);
     assert.equal(await focused(), individual, key);
     assert.equal(await page.locator('.niche[tabindex="0"]').count(), 1);
     assert.match(await info(), new RegExp(`individual ${individual},`));
@@ -208,21 +178,16 @@ test("the keyboard reaches every cell, and opens its robot", async () => {
 });
 
 const chart = (name, of = page) =>
-  inPage(
-    of,
-    ({ charts }, key) => {
-      const { data, plot } = charts.byName[key];
-      return { data, labels: plot.series.map(({ label }) => label), y: plot.axes[1].label };
-    },
-    name,
-  );
+  inPage(of, ({ charts }, key) => {
+    const { data, plot } = charts.byName[key];
+    return { data, labels: plot.series.map(({ label }) => label), y: plot.axes[1].label };
+  }, name);
 const generations = () => inPage(page, ({ data }) => data.runs[0].generations);
 
 test("coverage and QD score can be chosen", async () => {
   const all = await generations();
   const evaluations = all.map((g) => g.evaluations);
-  const covered = await chart("niches");
-  assert.deepEqual(covered.data, [evaluations, all.map((g) => 100 * g.map.coverage)]);
+  assert.deepEqual((await chart("niches")).data, [evaluations, all.map((g) => 100 * g.map.coverage)]);
   const title = "Coverage and QD score over evaluations";
   await figure(title).getByLabel("y axis").selectOption({ label: "QD score (body lengths)" });
   const scored = await chart("niches");
@@ -268,51 +233,36 @@ test("several runs have a map each, with the same colours, and their elites come
   await niche(unfilmed, maps.nth(1)).click();
   const command = await maps.nth(1).locator("code").textContent();
   assert.equal(command, `evodevo report '/runs/it'\\''s other' --individual ${unfilmed}`);
+  assert.equal(await inPage(both, ({ viewer }) => viewer.chosen[0]), 0);
   await niche(filmed, maps.nth(1)).click();
   await showing(roles.length - 2, both);
   assert.deepEqual([await outlined(maps.nth(0)), await outlined(maps.nth(1))], [0, 1]);
   assert.equal((await chart("niches", both)).labels.length, 3);
-  assert.deepEqual(both.complaints, []);
-  await both.close();
+  await closed(both);
 });
 
-test("a single descriptor gives a single row", async () => {
+test("a single descriptor gives a single row, and a QD score is shown only where there is one", async () => {
   const single = await changed("single", (run) => {
     const made = mapped(run);
     const elites = [0, 3].map((column) => ({ cell: [column], individual: filmed + column, value: 0.5 }));
-    return [{ ...made, map: { ...made.map, axes: axes.slice(0, 1), cells: 4, elites } }];
+    const generations = made.generations.map((g) => ({ ...g, map: { ...g.map, qd_score: null } }));
+    return [{ ...made, generations, map: { ...made.map, axes: axes.slice(0, 1), cells: 4, elites } }];
   });
   const boxes = await Promise.all([filmed, filmed + 3].map((id) => niche(id, single).boundingBox()));
   assert.ok(boxes[0].y === boxes[1].y && boxes[1].x > boxes[0].x + 2.5 * boxes[0].width);
   assert.equal(await single.locator(".y.values").count(), 0);
-  assert.deepEqual(single.complaints, []);
-  await single.close();
-});
-
-test("a QD score is shown only where there is one", async () => {
-  const least = await changed("least", (run) => {
-    const made = mapped(run);
-    const unscored = made.generations.map((g) => ({ ...g, map: { ...g.map, qd_score: null } }));
-    return [{ ...made, generations: unscored }];
-  });
-  const of = least.locator("figure", { hasText: "Coverage over evaluations" });
-  assert.equal(await of.locator("select").count(), 0);
-  assert.equal(await least.locator(".fact", { hasText: "Coverage" }).locator("span").textContent(), "cells");
-  await least.close();
+  assert.equal(await single.locator("figure", { hasText: "Coverage over evaluations" }).locator("select").count(), 0);
+  assert.equal(await single.locator(".fact", { hasText: "Coverage" }).locator("span").textContent(), "cells");
+  await closed(single);
 });
 
 test("without a map, notes and labels, there is nothing of them", async () => {
   const plain = await changed("plain", (run) => [{ ...run, map: null, notes: [], labels: [] }]);
   assert.equal(await plain.locator(".niches").count(), 0);
   assert.equal(await plain.locator(".fact", { hasText: "Coverage" }).count(), 0);
-  assert.deepEqual(await inPage(plain, ({ charts }) => Object.keys(charts.byName)), [
-    "evaluations",
-    "springs",
-    "ages",
-    "statuses",
-  ]);
-  assert.deepEqual(plain.complaints, []);
-  await plain.close();
+  const charts = await inPage(plain, ({ charts }) => Object.keys(charts.byName));
+  assert.deepEqual(charts, ["evaluations", "springs", "ages", "statuses"]);
+  await closed(plain);
 });
 
 test("a map without any elite, and one without robots on the page, do no harm", async () => {
@@ -323,17 +273,14 @@ test("a map without any elite, and one without robots on the page, do no harm", 
   assert.equal(await bare.locator(".niches").count(), 1);
   await niche(filmed, bare).click();
   assert.match(await bare.locator(".niches code").textContent(), new RegExp(`--individual ${filmed}$`));
-  assert.deepEqual(bare.complaints, []);
-  await bare.close();
+  await closed(bare);
 });
 
 test("the map fits a phone", async () => {
-  const phone = await changed("phone", (run) => [mapped(run)], { viewport: { width: 360, height: 740 }, isMobile: true });
-  const width = await phone.evaluate(() => [document.documentElement.scrollWidth, innerWidth]);
-  assert.ok(width[0] <= width[1], `${width[0]} wide`);
+  const phone = await changed("phone", (run) => [mapped(run)], onPhone);
   const box = await niche(filmed, phone).boundingBox();
   assert.ok(box.width > 24 && box.height > 24);
-  await phone.close();
+  await closed(phone);
 });
 
 test("every cell of a real run opens its robot", async () => {
@@ -341,9 +288,7 @@ test("every cell of a real run opens its robot", async () => {
   const file = scratch.path("map.toml");
   const text = readFileSync(scratch.file, "utf8").replace("age-fitness-pareto", "map-elites");
   writeFileSync(file, text + descriptor("height") + descriptor("contact"));
-  evodevo("run", file, "--out", scratch.path("map"));
-  evodevo("report", scratch.path("map"), "--best", "0", "--out", scratch.path("map.html"));
-  const real = await opened(browser, scratch.path("map.html"));
+  const real = await opened(reported(ran("map", ["experiment.verify=0"], file), "--best", "0"));
   const elites = await inPage(real, ({ data }) => data.runs[0].map.elites);
   assert.ok(elites.length > 1);
   for (const { individual } of elites) {
@@ -352,5 +297,5 @@ test("every cell of a real run opens its robot", async () => {
   }
   const cell = await inPage(real, ({ viewer }) => viewer.stages[0].life.robot.notes.cell);
   assert.equal(cell, 3 * elites.at(-1).cell[0] + elites.at(-1).cell[1]);
-  assert.deepEqual(real.complaints, []);
+  await closed(real);
 });

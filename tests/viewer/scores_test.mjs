@@ -1,30 +1,19 @@
 // The report's page of runs with several objectives, other scores and scenarios.
 import assert from "node:assert/strict";
 import { cpSync, readFileSync, writeFileSync } from "node:fs";
-import { after, before, test } from "node:test";
-import { archived, evodevo, inPage, launch, opened, Scratch, until } from "./support.mjs";
+import { before, test } from "node:test";
+import { archived, closed, inPage, onPhone, opened, ran, reported, scratch, sorted, until } from "./support.mjs";
 
 const far = "<b>far</b>"; // would be bold if it were interpreted as markup
-const scratch = new Scratch();
 const run = scratch.path("scores");
-const report = scratch.path("scores.html");
-let browser, page;
+let report, page;
 
 const window = "settle = 0.5\nwindow = 1.0\n";
+const objective = (name, keys) => `[[fitness]]\nname = "${name}"\n${keys}${window}`;
 const experiment = `${readFileSync(scratch.file, "utf8").replace(`name = "distance"`, `name = "distance"\nlabel = "${far}"`)}
-[[fitness]]
-name = "actuation-work"
-${window}
-[[fitness]]
-name = "descriptor"
-what = "height"
-label = "stature"
-${window}
-[[fitness]]
-name = "descriptor"
-what = "contact"
-label = "touching"
-${window}
+${objective("actuation-work", "")}
+${objective("descriptor", `what = "height"\nlabel = "stature"\n`)}
+${objective("descriptor", `what = "contact"\nlabel = "touching"\n`)}
 [[scenario]]
 name = "flat"
 [[scenario]]
@@ -36,14 +25,8 @@ repeat = 2
 before(async () => {
   const file = scratch.path("scores.toml");
   writeFileSync(file, experiment);
-  evodevo("run", file, "--out", run);
-  evodevo("report", run, "--individual", "0", "--out", report);
-  browser = await launch();
-  page = await opened(browser, report);
-});
-after(async () => {
-  await browser?.close();
-  scratch.remove();
+  report = reported(ran("scores", [], file), "--individual", "0");
+  page = await opened(report);
 });
 
 const figure = (title) => page.locator("figure", { has: page.locator("figcaption", { hasText: title }) });
@@ -51,18 +34,9 @@ const choose = (title, label, score) => figure(title).getByLabel(label).selectOp
 const optionsOf = (select) => select.locator("option").allTextContents();
 
 test("names, units and directions are as given, and nothing is complained of", async () => {
-  assert.deepEqual(await page.locator(".robots th").allTextContents(), [
-    "Robot",
-    "Individual",
-    `${far} (body lengths)`,
-    "actuation-work (J)",
-    "stature (m)",
-    "touching",
-    "Born",
-    "Age",
-    "Made by",
-    "First parents",
-  ]);
+  const scores = [`${far} (body lengths)`, "actuation-work (J)", "stature (m)", "touching"];
+  const heads = ["Robot", "Individual", ...scores, "Born", "Age", "Made by", "First parents"];
+  assert.deepEqual(await page.locator(".robots th").allTextContents(), heads);
   const fact = page.locator(".fact", { hasText: "Best actuation-work" });
   const least = archived(run, "SELECT min(value) FROM scores WHERE objective = 1")[0][0];
   assert.equal(await fact.locator("b").textContent(), String(Number(least.toPrecision(4))));
@@ -72,22 +46,15 @@ test("names, units and directions are as given, and nothing is complained of", a
 });
 
 test("the progress in each objective can be chosen", async () => {
-  const title = "Fitness over evaluations";
-  assert.deepEqual(await optionsOf(figure(title).getByLabel("Objective")), [
-    `${far} (body lengths)`,
-    "actuation-work (J)",
-  ]);
-  const select = figure(title).getByLabel("Objective");
+  const select = figure("Fitness over evaluations").getByLabel("Objective");
+  assert.deepEqual(await optionsOf(select), [`${far} (body lengths)`, "actuation-work (J)"]);
   await select.focus();
   await page.keyboard.press("ArrowDown");
-  const members = archived(
-    run,
-    "SELECT generation, value FROM members JOIN scores USING (individual) WHERE objective = 1 ORDER BY generation, value",
-  );
+  const members = archived(run,
+    "SELECT generation, value FROM members JOIN scores USING (individual) WHERE objective = 1 ORDER BY generation, value");
   const evaluations = archived(run, "SELECT evaluations FROM generations ORDER BY generation");
   const worksOf = (generation) => members.filter(([g]) => g === generation).map(([, value]) => value);
-  const median = (sorted) =>
-    (sorted[Math.floor((sorted.length - 1) / 2)] + sorted[Math.floor(sorted.length / 2)]) / 2;
+  const median = (all) => (all[Math.floor((all.length - 1) / 2)] + all[Math.floor(all.length / 2)]) / 2;
   const works = evaluations.map((_, generation) => worksOf(generation));
   const data = await inPage(page, ({ charts }) => charts.byName.evaluations.data);
   assert.deepEqual(data, [evaluations.flat(), works.map(([least]) => least), works.map(median)]);
@@ -97,8 +64,6 @@ test("the progress in each objective can be chosen", async () => {
   assert.deepEqual(other, archived(run, "SELECT best FROM generations ORDER BY generation").flat());
 });
 
-/** The values of the living in two columns of a query, sorted. */
-const sorted = (points) => points.map(([x, y]) => [x, y]).sort((a, b) => a[0] - b[0] || a[1] - b[1]);
 const near = (points, expected) => {
   assert.equal(points.length, expected.length);
   points.forEach(([x, y], i) => {
@@ -114,17 +79,11 @@ const points = async (series) => {
 test("the axes of the living can be chosen among age, objectives and other scores", async () => {
   const title = "The living";
   const groups = figure(title).getByLabel("x axis").locator("optgroup");
-  assert.deepEqual(await groups.evaluateAll((all) => all.map(({ label }) => label)), [
-    "Age",
-    "Objectives",
-    "Descriptors",
-  ]);
+  assert.deepEqual(await groups.evaluateAll((all) => all.map(({ label }) => label)), ["Age", "Objectives", "Descriptors"]);
   await choose(title, "x axis", `${far} (body lengths)`);
   await choose(title, "y axis", "actuation-work (J)");
-  const living = archived(
-    run,
-    "SELECT a.value, b.value FROM individuals JOIN scores a ON a.individual = id JOIN scores b ON b.individual = id WHERE died IS NULL AND a.objective = 0 AND b.objective = 1",
-  );
+  const living = archived(run,
+    "SELECT a.value, b.value FROM individuals JOIN scores a ON a.individual = id JOIN scores b ON b.individual = id WHERE died IS NULL AND a.objective = 0 AND b.objective = 1");
   near(await points(1), sorted(living));
   const unbeaten = living.filter(
     ([x, y]) => !living.some(([a, b]) => a >= x && b <= y && (a > x || b < y)), // far with little work
@@ -133,26 +92,11 @@ test("the axes of the living can be chosen among age, objectives and other score
   assert.match(await figure(title).locator("figcaption").textContent(), /front/);
 
   await choose(title, "y axis", "touching");
-  const touching = archived(
-    run,
-    "SELECT s.value, m.value FROM individuals JOIN scores s ON s.individual = id JOIN measured m ON m.individual = id WHERE died IS NULL AND s.objective = 0 AND m.measure = 1",
-  );
+  const touching = archived(run,
+    "SELECT s.value, m.value FROM individuals JOIN scores s ON s.individual = id JOIN measured m ON m.individual = id WHERE died IS NULL AND s.objective = 0 AND m.measure = 1");
   near(await points(1), sorted(touching));
   assert.equal(await inPage(page, ({ charts }) => charts.byName.ages.data.length), 2, "no front");
   assert.doesNotMatch(await figure(title).locator("figcaption").textContent(), /front/);
-});
-
-test("points with the same x are all there", async () => {
-  await choose("The living", "x axis", "age (generations)");
-  await choose("The living", "y axis", "actuation-work (J)");
-  const last = archived(run, "SELECT max(generation) FROM generations")[0][0];
-  const living = archived(
-    run,
-    `SELECT ${last} - origin, value FROM individuals JOIN scores ON individual = id WHERE died IS NULL AND objective = 1`,
-  );
-  assert.ok(new Set(living.map(([age]) => age)).size < living.length);
-  const shown = (await points(1)).map(([age, value]) => [Math.round(age), value]);
-  assert.deepEqual(sorted(shown), sorted(living));
 });
 
 /** Changes the theme, and waits until the page, which hears of it later, has heard of it. */
@@ -172,17 +116,14 @@ test("what is chosen stays when the theme changes", async () => {
   await useColours("dark");
   const dark = await inPage(page, ({ charts }) => charts.byName.ages.plot.series[1].points.fill());
   await useColours("light");
-  const light = await inPage(page, ({ charts }) => charts.byName.ages.plot.series[1].points.fill());
-  assert.notEqual(dark, light);
+  assert.notEqual(dark, await inPage(page, ({ charts }) => charts.byName.ages.plot.series[1].points.fill()));
   assert.equal(await choice.inputValue(), chosen);
   assert.deepEqual(await points(1), before);
 });
 
 /** The rows of the table of tests: for each, its name and scores. */
-const rowsOfTests = () =>
-  page
-    .locator(".tests tbody tr")
-    .evaluateAll((rows) => rows.map((row) => [...row.children].map((cell) => cell.firstChild.textContent)));
+const rowsOfTests = () => page.locator(".tests tbody tr").evaluateAll((rows) =>
+  rows.map((row) => [...row.children].map((cell) => cell.firstChild.textContent)));
 const short = (value) => (Math.abs(value) < 1e-3 ? undefined : String(Number(value.toPrecision(4))));
 
 test("the scores by test are those of the robots shown", async () => {
@@ -198,22 +139,12 @@ test("the scores by test are those of the robots shown", async () => {
   };
   const ids = await inPage(page, ({ viewer }) => viewer.robots.map(({ robot }) => robot.individual));
   const one = await rowsOfTests();
-  assert.deepEqual(
-    one.map(([name]) => name),
-    ["flat", "hurt, repeat 1", "hurt, repeat 2", "combined"],
-  );
-  agree(
-    one.flatMap(([, ...scores]) => scores),
-    expected(ids[0]),
-  );
+  assert.deepEqual(one.map(([name]) => name), ["flat", "hurt, repeat 1", "hurt, repeat 2", "combined"]);
+  agree(one.flatMap(([, ...scores]) => scores), expected(ids[0]));
   assert.equal(await page.locator(".tests tr", { hasText: "in the film" }).locator("th").first().textContent(), "flatin the film");
   await page.getByLabel("beside").selectOption("1");
   await until(page, ({ viewer }) => viewer.stages.length === 2);
-  const two = await rowsOfTests();
-  agree(
-    two.flatMap(([, , , ...scores]) => scores),
-    expected(ids[1]),
-  );
+  agree((await rowsOfTests()).flatMap(([, , , ...scores]) => scores), expected(ids[1]));
   await page.getByLabel("beside").selectOption("");
   await until(page, ({ viewer }) => viewer.stages.length === 1);
 });
@@ -223,8 +154,7 @@ test("beside the film stand its test and how far the robot has moved in it", asy
   const caption = page.locator(".caption").first();
   assert.match(await caption.locator("span").textContent(), /^measured in flat · .* · (-?[\d.]+) of \1 body lengths \(-?[\d.]+ m\) along \+x$/);
   assert.match(await caption.locator("strong").textContent(), /far<\/b> \S+ body lengths, actuation-work \S+ J$/);
-  evodevo("report", run, "--best", "1", "--scenario", "hurt", "--out", scratch.path("hurt.html"));
-  const hurt = await opened(browser, scratch.path("hurt.html"));
+  const hurt = await opened(reported(run, "--best", "1", "--scenario", "hurt"));
   assert.equal(await hurt.locator(".tests tr", { hasText: "in the film" }).locator("th").textContent(), "hurt, repeat 1in the film");
   const filmed = await inPage(hurt, ({ viewer }) => viewer.robots[0].robot);
   const scores = `SELECT value FROM tests WHERE individual = ${filmed.individual} AND scenario = 1 AND repeat = 0`;
@@ -236,8 +166,7 @@ test("a score that differs in the life shown is told beside the test", async () 
   const changed = scratch.path("changed");
   cpSync(run, changed, { recursive: true });
   archived(changed, "UPDATE tests SET value = 77 WHERE scenario = 0 AND objective = 1");
-  evodevo("report", changed, "--best", "1", "--out", scratch.path("changed.html"));
-  const other = await opened(browser, scratch.path("changed.html"));
+  const other = await opened(reported(changed, "--best", "1"));
   const texts = await other.locator(".tests tbody tr").first().locator("td").allTextContents();
   assert.match(texts[1], /^77 \(as shown: [\d.]+\)$/);
   assert.doesNotMatch(texts[0], /as shown/);
@@ -252,23 +181,15 @@ test("the best robot by each objective is shown", async () => {
 });
 
 test("runs with different objectives can be compared in each that one of them has", async () => {
-  const other = scratch.path("other");
-  evodevo("run", scratch.file, "--out", other);
-  evodevo("report", run, other, "--best", "1", "--out", scratch.path("both.html"));
-  const both = await opened(browser, scratch.path("both.html"));
+  const other = ran("other");
+  const both = await opened(reported(run, other, "--best", "1"));
   const select = both.locator("figure", { hasText: "Fitness over evaluations" }).getByLabel("Objective");
   assert.deepEqual(await optionsOf(select), [`${far} (body lengths)`, "actuation-work (J)", "distance (body lengths)"]);
   await select.selectOption({ label: "distance (body lengths)" });
   const data = await inPage(both, ({ charts }) => charts.byName.evaluations.data);
   assert.ok(data[1].every((value) => value === null));
   assert.deepEqual(data[3], archived(other, "SELECT best FROM generations ORDER BY generation").flat());
-  assert.deepEqual(both.complaints, []);
-  await both.close();
+  await closed(both);
 });
 
-test("it fits a phone", async () => {
-  const phone = await opened(browser, report, { viewport: { width: 360, height: 740 }, isMobile: true });
-  const width = await phone.evaluate(() => [document.documentElement.scrollWidth, innerWidth]);
-  assert.ok(width[0] <= width[1], `${width[0]} wide`);
-  await phone.close();
-});
+test("it fits a phone", async () => closed(await onPhone(report)));

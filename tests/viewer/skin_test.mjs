@@ -1,23 +1,14 @@
 // The skins of bodies of voxels.
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
-import { differing, evodevo, inPage, launch, opened, picture, Scratch, sum } from "./support.mjs";
+import { before, test } from "node:test";
+import { closed, differing, evodevo, inPage, opened, picture, ran, reported, scratch, sum } from "./support.mjs";
 
 const edge = 0.11; // m
-const scratch = new Scratch();
-const report = scratch.path("report.html");
-let browser, page;
+let page;
 
 before(async () => {
-  const settings = [`encoding={name='voxel', size=[3, 4, 2], edge=${edge}}`, "development.operator.0.springs=73", "experiment.verify=0"];
-  evodevo("run", scratch.file, "--out", scratch.run, ...settings.flatMap((setting) => ["--set", setting]));
-  evodevo("report", scratch.run, "--out", report);
-  browser = await launch();
-  page = await opened(browser, report);
-});
-after(async () => {
-  await browser?.close();
-  scratch.remove();
+  const encoding = `encoding={name='voxel', size=[3, 4, 2], edge=${edge}}`;
+  page = await opened(reported(ran("run", [encoding, "development.operator.0.springs=73", "experiment.verify=0"])));
 });
 
 const skinBox = (tab) => tab.getByLabel("Skin", { exact: true });
@@ -48,25 +39,35 @@ function facesOf(voxels, pairs, masses) {
   return { whole: whole.length, faces: sum(whole.map(({ at }) => neighbours(at).filter((next) => !there.has(next.join())).length)) };
 }
 
-test("in each cycle the skin has the outer faces of the voxels that are there", async () => {
-  await skinBox(page).check();
-  const individual = await inPage(page, ({ viewer }) => viewer.robots[0].robot.individual);
-  const shots = await inPage(page, ({ viewer }) => {
-    const [stage] = viewer.stages;
-    const { life } = stage;
-    return life.shots.map(({ begin, springs, masses }) => {
-      viewer.seek(begin);
-      viewer.draw();
-      return {
-        faces: stage.skin.getAttribute("position").count / 4,
-        pairs: [...springs].map((spring) => [...life.ends.slice(2 * spring, 2 * spring + 2)]),
-        masses: [...masses],
-      };
-    });
+/** Is executed in the page. Returns of each shot of the first robot: the number of faces of its skin, that of the springs
+ *  that are drawn, and the springs and masses that are there. */
+function shotsOf({ viewer }) {
+  const [stage] = viewer.stages;
+  const { ends, shots } = stage.life;
+  return shots.map(({ begin, springs, masses }) => {
+    viewer.seek(begin);
+    viewer.draw();
+    return {
+      faces: stage.skin.getAttribute("position").count / 4,
+      drawn: stage.springs.getAttribute("position").count / 4,
+      pairs: [...springs].map((spring) => [...ends.slice(2 * spring, 2 * spring + 2)]),
+      masses: [...masses],
+    };
   });
-  const voxels = voxelsOf(individual);
+}
+
+/** The voxels of the first robot of a page, the shots of its life, and what the skin must have in each. */
+async function expectedOf(tab, run) {
+  await skinBox(tab).check();
+  const voxels = voxelsOf(await inPage(tab, ({ viewer }) => viewer.robots[0].robot.individual), run);
+  const shots = await inPage(tab, shotsOf);
+  const of = ({ pairs, masses }) => facesOf(voxels, new Set(pairs.map(([a, b]) => pairOf(a, b))), new Set(masses));
+  return { voxels, shots, counts: shots.map(of) };
+}
+
+test("in each cycle the skin has the outer faces of the voxels that are there", async () => {
+  const { voxels, shots, counts } = await expectedOf(page);
   assert.ok(voxels.length > 8 && voxels.length < 24, `${voxels.length} voxels`);
-  const counts = shots.map(({ pairs, masses }) => facesOf(voxels, new Set(pairs.map(([a, b]) => pairOf(a, b))), new Set(masses)));
   assert.deepEqual(shots.map(({ faces }) => faces), counts.map(({ faces }) => faces));
   assert.equal(counts[0].whole, voxels.length);
   assert.ok(counts.at(-1).whole < voxels.length, "no voxel has come apart, so this tests less than it should");
@@ -116,51 +117,29 @@ test("a skin hides the springs, and moves with the masses", async () => {
 });
 
 test("S covers and uncovers", async () => {
-  await skinBox(page).uncheck();
   await page.locator(".stage canvas").focus();
-  await page.keyboard.press("s");
-  assert.equal(await skinBox(page).isChecked(), true);
-  await page.keyboard.press("s");
-  assert.equal(await skinBox(page).isChecked(), false);
+  for (const covered of [await skinBox(page).isChecked(), !(await skinBox(page).isChecked())]) {
+    await page.keyboard.press("s");
+    assert.equal(await skinBox(page).isChecked(), !covered);
+  }
 });
 
 test("a skin covers voxels whose springs act in parallel to those of their neighbours", async () => {
-  const [run, file] = [scratch.path("parallel"), scratch.path("parallel.html")];
-  const settings = ["encoding={name='voxel', size=[3, 2, 2], edge=0.11, springs='own'}", "simulation.dt='auto'", "experiment.evaluations=12", "experiment.verify=0"];
-  evodevo("run", scratch.file, "--out", run, ...settings.flatMap((setting) => ["--set", setting]));
-  evodevo("report", run, "--best", "1", "--out", file);
-  const tab = await opened(browser, file);
-  await skinBox(tab).check();
-  const { individual, pairs, masses, drawn, faces } = await inPage(tab, ({ viewer }) => {
-    const [stage] = viewer.stages;
-    viewer.seek(0);
-    viewer.draw();
-    const { ends, shots } = stage.life;
-    return {
-      individual: viewer.robots[0].robot.individual,
-      pairs: [...shots[0].springs].map((spring) => [...ends.slice(2 * spring, 2 * spring + 2)]),
-      masses: [...shots[0].masses],
-      drawn: stage.springs.getAttribute("position").count / 4,
-      faces: stage.skin.getAttribute("position").count / 4,
-    };
-  });
-  const voxels = voxelsOf(individual, run);
+  const encoding = "encoding={name='voxel', size=[3, 2, 2], edge=0.11, springs='own'}";
+  const run = ran("parallel", [encoding, "simulation.dt='auto'", "experiment.evaluations=12", "experiment.verify=0"]);
+  const tab = await opened(reported(run, "--best", "1"));
+  const { voxels, shots, counts } = await expectedOf(tab, run);
   assert.ok(voxels.length > 1, `${voxels.length} voxels`);
-  assert.equal(pairs.length, 28 * voxels.length);
-  assert.equal(drawn, 0, "springs that faces cover are drawn");
-  assert.equal(faces, facesOf(voxels, new Set(pairs.map(([a, b]) => pairOf(a, b))), new Set(masses)).faces);
-  assert.deepEqual(tab.complaints, []);
-  await tab.close();
+  assert.equal(shots[0].pairs.length, 28 * voxels.length);
+  assert.equal(shots[0].drawn, 0, "springs that faces cover are drawn");
+  assert.equal(shots[0].faces, counts[0].faces);
+  await closed(tab);
 });
 
 test("a network has no skin to switch on", async () => {
-  const [run, file] = [scratch.path("network"), scratch.path("network.html")];
-  evodevo("run", scratch.file, "--out", run, "--set", "experiment.verify=0");
-  evodevo("report", run, "--best", "1", "--out", file);
-  const tab = await opened(browser, file);
+  const tab = await opened(reported(ran("network", ["experiment.verify=0"]), "--best", "1"));
   assert.equal(await skinBox(tab).isVisible(), false);
   await tab.keyboard.press("s");
   assert.equal(await inPage(tab, ({ viewer }) => viewer.stages[0].hasSkin), false);
-  assert.deepEqual(tab.complaints, []);
-  await tab.close();
+  await closed(tab);
 });

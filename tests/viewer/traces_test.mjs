@@ -1,24 +1,14 @@
 // The charts of a picked spring or mass over the life.
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
-import { after, before, test } from "node:test";
-import { cycleTime, evodevo, inPage, launch, opened, Scratch } from "./support.mjs";
+import { before, test } from "node:test";
+import { cycleTime, inPage, opened, ran, reported, saved } from "./support.mjs";
 
-const scratch = new Scratch();
-const report = scratch.path("report.html");
-// voxels, whose springs are short and bear much, so that their forces are far above the rounding of positions
-const settings = ["--set", "experiment.verify=0", "--set", "encoding={name='voxel', size=[3, 4, 2], edge=0.11}"];
-let browser, page;
+let page;
 
 before(async () => {
-  evodevo("run", scratch.file, "--out", scratch.run, ...settings);
-  evodevo("report", scratch.run, "--out", report);
-  browser = await launch();
-  page = await opened(browser, report, { acceptDownloads: true, viewport: { width: 1180, height: 900 } });
-});
-after(async () => {
-  await browser?.close();
-  scratch.remove();
+  // voxels, whose springs are short and bear much, so that their forces are far above the rounding of positions
+  const run = ran("run", ["experiment.verify=0", "encoding={name='voxel', size=[3, 4, 2], edge=0.11}"]);
+  page = await opened(reported(run), { acceptDownloads: true, viewport: { width: 1180, height: 900 } });
 });
 
 /** Picks a mass or a spring of the first robot. */
@@ -95,17 +85,16 @@ test("the marker is at the moment that is shown", async () => {
   }
 });
 
-/** Clicks a button of the chart that is seen, and returns the file that it saves. */
-async function saved(name) {
-  const button = page.locator(".traces figure:visible").getByRole("button", { name });
-  const [download] = await Promise.all([page.waitForEvent("download"), button.click()]);
-  return { name: download.suggestedFilename(), content: readFileSync(await download.path(), "utf8") };
+/** Clicks a button of the chart that is seen, and returns the name and the text of the file that it saves. */
+async function savedBy(name) {
+  const file = await saved(page, page.locator(".traces figure:visible").getByRole("button", { name }));
+  return [file.name, file.content.toString()];
 }
 
 test("the chart leaves as CSV and, with its gaps, as SVG", async () => {
   const springs = await vanishing();
   await pick({ spring: springs[0] });
-  const { name, content } = await saved("Save CSV");
+  const [name, content] = await savedBy("Save CSV");
   const [a, b] = await inPage(page, ({ viewer }, s) => [...viewer.stages[0].life.ends.slice(2 * s, 2 * s + 2)], springs[0]);
   assert.equal(name, `Force-of-the-spring-between-masses-${a}-and-${b}.csv`);
   const [head, ...rows] = content.trim().split("\n");
@@ -122,7 +111,7 @@ test("the chart leaves as CSV and, with its gaps, as SVG", async () => {
     values[middle] = null;
     force.plot.setData([times, values]);
   });
-  const { content: svg } = await saved("Save SVG");
+  const [, svg] = await savedBy("Save SVG");
   const [, line] = /<path d="([^"]*)" fill="none" stroke="#/.exec(svg);
   assert.equal(line.match(/M/g).length, 2, line);
 });

@@ -42,8 +42,9 @@ __device__ __forceinline__ Number not_finite(const Vector& position, const Vecto
 
 /// A mass's contribution to the sum of mass times height, kg m. In single precision it is rounded to a multiple of
 /// 2^-26, so that sums up to 2^27 do not depend on the order of their terms.
-__device__ __forceinline__ double height_moment_of(Number mass, const Vector& position,
-                                                   const StepConstants<Number>& constants) {
+template <class T>
+__device__ __forceinline__ double height_moment_of(T mass, const Vector& position, const StepConstants<T>& constants) {
+  static_assert(only_for<gravity, T>);
   double height = position.z;
   if constexpr (slope) height = physics::height<double>(position.x, position.z, constants.grade);
   constexpr double magic = 0x1.8p26;  // its last bit is worth 2^-26
@@ -62,8 +63,9 @@ __device__ __forceinline__ std::uint64_t steps_before_span(const RunPiece& piece
 
 /// Updates the largest energy that the body has lost by falling below the origin. `height_moment` is the sum of mass
 /// times height, kg m.
-__device__ __forceinline__ void record_fall(double height_moment, const StepConstants<Number>& constants,
-                                            Answer& answer) {
+template <class T>
+__device__ __forceinline__ void record_fall(double height_moment, const StepConstants<T>& constants, Answer& answer) {
+  static_assert(only_for<gravity, T>);
   answer.fallen = physics::maximum(answer.fallen, -static_cast<double>(constants.acceleration) * height_moment);
 }
 

@@ -9,31 +9,24 @@
 //   advance_position                                velocity ─► position
 #pragma once
 
+#include "cuda/layout/feature_list.hpp"
 #include "cuda/layout/formats.hpp"
 #include "physics/physics.hpp"
 
 namespace evodevo::cuda {
 
 using Number = EVODEVO_NUMBER;
-constexpr bool actuation = EVODEVO_ACTUATION;
-constexpr bool dashpots = EVODEVO_DASHPOTS;
-constexpr bool gravity = EVODEVO_GRAVITY;
-constexpr bool slope = EVODEVO_SLOPE;
-constexpr bool floor_on = EVODEVO_FLOOR;
-constexpr bool elastic_floor = EVODEVO_ELASTIC;
-constexpr bool rigid_floor = EVODEVO_RIGID;
-constexpr bool rough = EVODEVO_ROUGH;
-constexpr bool friction = EVODEVO_FRICTION;
-constexpr bool static_friction = EVODEVO_STATIC_FRICTION;
-constexpr bool damping = EVODEVO_DAMPING;
-constexpr bool drag = EVODEVO_DRAG;
-constexpr bool stress = EVODEVO_STRESS;
-constexpr bool work = EVODEVO_WORK;
-constexpr bool peak_force = EVODEVO_PEAK_FORCE;
-constexpr bool muscle_work = EVODEVO_MUSCLE_WORK;
-constexpr bool mean_tension = EVODEVO_TENSION;
-constexpr bool sampled = EVODEVO_SAMPLES;
-constexpr bool contacts = EVODEVO_CONTACTS;
+constexpr bool always = true;
+#define EVODEVO_CONSTANT(name, whole)            \
+  constexpr bool name = EVODEVO_HAS_##name;      \
+  static_assert(!name || whole, #name " is a part of " #whole);
+EVODEVO_FEATURES(EVODEVO_CONSTANT)
+#undef EVODEVO_CONSTANT
+
+/// Functions that exist for a feature alone are templates that assert only_for<feature, T>. So a kernel without the
+/// feature does not compile if it calls one.
+template <bool feature, class>
+constexpr bool only_for = feature;
 
 constexpr unsigned rows_per_step = EVODEVO_ROWS_PER_STEP;      // rows per step in the tables of lengths
 constexpr unsigned end_rows = EVODEVO_END_ROWS;                // 1 if a step reads the row at its end, otherwise 0
@@ -44,7 +37,9 @@ using Vector = physics::Triple<Number>;
 
 /// The phase of a material's actuation at `time` (s since birth), half turns. The phase is reduced in double precision,
 /// so that late times lose no digits.
-__device__ __forceinline__ double half_turns(const Actuator& actuator, double time) {
+template <class T>
+__device__ __forceinline__ double half_turns(const T& actuator, double time) {
+  static_assert(only_for<actuation, T>);
   const double turns = actuator.frequency * time;
   return 2 * (turns - floor(turns)) + actuator.phase;
 }
@@ -57,7 +52,9 @@ __device__ __forceinline__ Entry<Number> entry_of(const Actuator& actuator, doub
 }
 
 /// The rate of change of L/L0 at a given time (s since birth), 1/s.
-__device__ __forceinline__ Number length_rate(const Actuator& actuator, double time) {
+template <class T>
+__device__ __forceinline__ Number length_rate(const T& actuator, double time) {
+  static_assert(only_for<work, T>);
   double rate = 0;
   if constexpr (actuation)
     rate = 2 * 3.14159265358979323846 * actuator.frequency * actuator.amplitude * cospi(half_turns(actuator, time));
@@ -121,9 +118,11 @@ __device__ __forceinline__ void add_gravity(const StepConstants<Number>& constan
 }
 
 /// The rough ground under a point.
-__device__ __forceinline__ auto ground_under(const StepConstants<Number>& constants, const Vector& position) {
+template <class T>
+__device__ __forceinline__ physics::Ground<T> ground_under(const StepConstants<T>& constants, const Vector& position) {
+  static_assert(only_for<rough, T>);
   return physics::ground_at(position.x, position.y,
-                            physics::Roughness<Number>{constants.roughness, constants.cells, constants.seed});
+                            physics::Roughness<T>{constants.roughness, constants.cells, constants.seed});
 }
 
 /// The height of a point above the ground, m.

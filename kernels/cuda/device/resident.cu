@@ -48,7 +48,9 @@ __device__ __forceinline__ void set_position(unsigned offset, Vector position) {
   on_chip<Number>(offset + 2 * plane) = position.z;
 }
 
+template <class T = Number>
 __device__ __forceinline__ void set_dashpot_velocity(unsigned offset, Vector velocity) {
+  static_assert(only_for<dashpots, T>);
   on_chip<Number>(offset + 6 * plane) = velocity.x;
   on_chip<Number>(offset + 7 * plane) = velocity.y;
   on_chip<Number>(offset + 8 * plane) = velocity.z;
@@ -75,7 +77,7 @@ __device__ __forceinline__ void move_masses(const Body& body, const StepConstant
     if constexpr (dashpots)
       set_dashpot_velocity(offset, Method::dashpot_velocity(constants, pass, m, velocity_at(offset)));
     movers.velocity[i] = m.velocity;
-    if constexpr (contacts && floor_on)
+    if constexpr (contacts && has_floor)
       if (Method::ends_motion(pass)) movers.contact_steps[i] += touches(constants, m);
   });
 }

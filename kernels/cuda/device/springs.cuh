@@ -22,7 +22,9 @@ __device__ __forceinline__ Vector position_at(unsigned offset) {
 }
 
 /// The velocity at which dashpots act on a mass.
+template <class T = Number>
 __device__ __forceinline__ Vector velocity_at(unsigned offset) {
+  static_assert(only_for<dashpots, T>);
   return {on_chip<Number>(offset + 6 * plane), on_chip<Number>(offset + 7 * plane),
           on_chip<Number>(offset + 8 * plane)};
 }

@@ -58,9 +58,9 @@ Features features_of(const Scene& scene, const Stepping& stepping, Recording rec
           .materials = stepping.materials,
           .gravity = scene.gravity.has_value(),
           .slope = scene.on_slope(),
-          .floor = scene.floor.has_value(),
-          .elastic = scene.floor && !scene.floor->rigid(),
-          .rigid = scene.floor && scene.floor->rigid(),
+          .has_floor = scene.floor.has_value(),
+          .elastic_floor = scene.floor && !scene.floor->rigid(),
+          .rigid_floor = scene.floor && scene.floor->rigid(),
           .rough = scene.floor && scene.floor->rough(),
           .friction = scene.friction && scene.floor,
           .static_friction = scene.friction && scene.floor && scene.friction->higher_at_rest(),
@@ -72,45 +72,28 @@ Features features_of(const Scene& scene, const Stepping& stepping, Recording rec
           .work = recording.work || recording.muscle_work || channels.work,
           .peak_force = recording.peak_force,
           .muscle_work = recording.muscle_work,
-          .tension = recording.tension,
-          .samples = channels.any(),
+          .mean_tension = recording.tension,
+          .sampled = channels.any(),
           .contacts = channels.contact || channels.contacts};
 }
 
 std::vector<std::string> definitions(const Features& features) {
   const MethodForm& method = form_of(features.method);
-  const auto flag = [](const char* name, bool on) {
-    return std::string("EVODEVO_") + name + "=" + (on ? "true" : "false");
-  };
-  return {features.float64 ? "EVODEVO_NUMBER=double" : "EVODEVO_NUMBER=float",
-          "EVODEVO_METHOD=\"" + std::string(method.file) + "\"",
-          number("ROWS_PER_STEP", method.rows_per_step),
-          number("END_ROWS", method.end_rows),
-          number("OPENING_PASSES", method.opening_passes),
-          number("PASSES_PER_STEP", method.passes_per_step),
-          number("NUMBERS_OF_MASS", method.numbers_of_mass),
-          number("NUMBERS_OF_JOINT", method.numbers_of_joint),
-          number("MAX_THREADS", 32 * largest_block(features.float64)),
-          number("CHECK_THREADS", check_threads),
-          flag("ACTUATION", features.actuation),
-          flag("DASHPOTS", features.dashpots),
-          flag("GRAVITY", features.gravity),
-          flag("SLOPE", features.slope),
-          flag("FLOOR", features.floor),
-          flag("ELASTIC", features.elastic),
-          flag("RIGID", features.rigid),
-          flag("ROUGH", features.rough),
-          flag("FRICTION", features.friction),
-          flag("STATIC_FRICTION", features.static_friction),
-          flag("DAMPING", features.damping),
-          flag("DRAG", features.drag),
-          flag("STRESS", features.stress),
-          flag("WORK", features.work),
-          flag("PEAK_FORCE", features.peak_force),
-          flag("MUSCLE_WORK", features.muscle_work),
-          flag("TENSION", features.tension),
-          flag("SAMPLES", features.samples),
-          flag("CONTACTS", features.contacts)};
+  std::vector<std::string> all{features.float64 ? "EVODEVO_NUMBER=double" : "EVODEVO_NUMBER=float",
+                               "EVODEVO_METHOD=\"" + std::string(method.file) + "\"",
+                               number("ROWS_PER_STEP", method.rows_per_step),
+                               number("END_ROWS", method.end_rows),
+                               number("OPENING_PASSES", method.opening_passes),
+                               number("PASSES_PER_STEP", method.passes_per_step),
+                               number("NUMBERS_OF_MASS", method.numbers_of_mass),
+                               number("NUMBERS_OF_JOINT", method.numbers_of_joint),
+                               number("MAX_THREADS", 32 * largest_block(features.float64)),
+                               number("CHECK_THREADS", check_threads)};
+#define EVODEVO_DEFINE(name, whole) \
+  all.push_back(std::string("EVODEVO_HAS_" #name "=") + (features.name ? "true" : "false"));
+  EVODEVO_FEATURES(EVODEVO_DEFINE)
+#undef EVODEVO_DEFINE
+  return all;
 }
 
 std::vector<std::string> definitions(const Features& features, const ResidentForm& form) {

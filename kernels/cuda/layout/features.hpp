@@ -7,6 +7,7 @@
 
 #include "core/scene.hpp"
 #include "core/simulator.hpp"
+#include "cuda/layout/feature_list.hpp"
 #include "cuda/layout/formats.hpp"
 
 namespace evodevo::cuda {
@@ -34,18 +35,14 @@ struct MethodForm {
 
 const MethodForm& form_of(Method method);
 
-/// Features of the scene and of a run that are compiled into a kernel.
+/// Features of the scene and of a run that are compiled into a kernel (feature_list.hpp).
 struct Features {
   Method method = Method::paper_euler;
   bool float64 = false;
   Materials materials = Materials::table;
-  bool gravity = false, slope = false;
-  bool floor = false, elastic = false, rigid = false, rough = false;  ///< a floor is either elastic or rigid
-  bool friction = false, static_friction = false;  ///< static_friction: it is higher than that of sliding
-  bool damping = false, drag = false;
-  bool actuation = false, dashpots = false, stress = false, work = false;
-  bool peak_force = false, muscle_work = false, tension = false;  ///< muscle_work implies work
-  bool samples = false, contacts = false;                         ///< contacts implies samples
+#define EVODEVO_MEMBER(name, whole) bool name = false;
+  EVODEVO_FEATURES(EVODEVO_MEMBER)
+#undef EVODEVO_MEMBER
 
   friend auto operator<=>(const Features&, const Features&) = default;
 };

@@ -63,7 +63,7 @@ std::optional<Resident<T>> Resident<T>::arrange(const Task& task, const Features
     resident.divide_chip(true, chip);
     if (resident.chip_.size > chip || !(is_last || resident.is_fast(chip))) continue;
     resident.divide_chip(features.work, chip);
-    if (features.samples)
+    if (features.sampled)
       resident.samples_ = SampleLayout(task, spans_per_range, resident.padded_masses(), resident.slots());
     resident.reserve();
     return resident;
@@ -197,7 +197,7 @@ void Resident<T>::reserve() {
   recent_stress_ = sums.add<T>(features_.stress && form().chunked ? slots() : 0);
   peak_ = sums.add<typename FixedPoint<T>::Integer>(features_.peak_force ? slots() : 0);
   powers_ = sums.add<double>(features_.muscle_work ? slots() : 0);
-  tensions_ = sums.add<double>(features_.tension ? slots() : 0);
+  tensions_ = sums.add<double>(features_.mean_tension ? slots() : 0);
   samples_.reserve(input, sums);
   sizes_ = {.descriptions = descriptions_bytes<ResidentBody<T>>(blocks()),
             .input = input.size(),

@@ -34,7 +34,7 @@ Streamed<T>::Streamed(const Task& task, const Features& features, std::size_t la
   }
   if (form_of(features.method).coloured) colour_ = spring_colours(body);
   if (!colour_.empty()) colours_ = *std::max_element(colour_.begin(), colour_.end()) + 1;
-  if (features.samples) samples_ = SampleLayout(task, spans_per_range, masses(), joints());
+  if (features.sampled) samples_ = SampleLayout(task, spans_per_range, masses(), joints());
   reserve();
 }
 
@@ -61,7 +61,7 @@ void Streamed<T>::reserve() {
   power_ = sums.add<double>(features_.work ? masses() : 0);
   peak_ = sums.add<T>(features_.peak_force ? joints() : 0);
   powers_ = sums.add<double>(features_.muscle_work ? joints() : 0);
-  tensions_ = sums.add<double>(features_.tension ? joints() : 0);
+  tensions_ = sums.add<double>(features_.mean_tension ? joints() : 0);
   scratch_ = scratch.add<T>(method.numbers_of_mass * masses() + method.numbers_of_joint * joints());
   samples_.reserve(input, sums);
   sizes_ = {descriptions_bytes<StreamedBody<T>>(1),

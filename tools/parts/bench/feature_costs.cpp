@@ -2,6 +2,11 @@
 #include <vector>
 
 #include "batch.hpp"
+#ifdef EVODEVO_CUDA
+#include "cuda/layout/features.hpp"
+#include "cuda/runtime/compiler.hpp"
+#include "machine_code.hpp"
+#endif
 #include "studies.hpp"
 
 namespace evodevo::tools::bench {
@@ -45,6 +50,24 @@ std::vector<Feature> features(const Body& body, const Body& still_body, const Bo
       {"stress", walking(stress), walking()},
       {"work", walking([](Variant& v) { v.recording.work = true; }), walking()},
   };
+}
+
+/// Adds to a row what the feature adds to the instructions of the kernel that keeps a body on the chip, for Hopper.
+void add_instructions([[maybe_unused]] const Feature& feature, [[maybe_unused]] Report& row) {
+#ifdef EVODEVO_CUDA
+  const auto code = [](const Variant& variant) {
+    const cuda::Features features =
+        cuda::features_of(variant.scene, {}, variant.recording, cuda::material_features(*variant.body));
+    const cuda::ResidentForm form{.rows = cuda::most_rows, .masses_per_thread = 1, .records_on_chip = true};
+    return machine_code(cuda::compile("cuda/device/resident.cu", definitions(features, form), "sm_90"))
+        .at("evodevo_run_resident");
+  };
+  const MachineCode with = code(feature.with), without = code(feature.without);
+  row["instructions_with_it"] = with.instructions;
+  row["instructions_without_it"] = without.instructions;
+  row["local_accesses_with_it"] = with.local_accesses;
+  row["local_accesses_without_it"] = without.local_accesses;
+#endif
 }
 
 /// Measures the rates with and without a feature alternately.
@@ -93,6 +116,7 @@ Report feature_costs(const Settings& settings) {
     Comparison comparison(settings, feature);
     for (int run = 0; run < settings.runs; ++run) comparison.measure();
     rows.push_back(comparison.row());
+    if (settings.device == "cuda") add_instructions(feature, rows.back());
     device = comparison.device();
   }
   Report report = conditions(settings, "What each feature costs", device, body);

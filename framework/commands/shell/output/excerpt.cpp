@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <optional>
-#include <regex>
+#include <string_view>
 
 #include "base/text.hpp"
 
@@ -38,14 +39,41 @@ std::size_t bytes_of(const std::string& text, unsigned long characters) {
   return bytes;
 }
 
+/// Removes a colon and a number of up to seven digits from the beginning of `text`, and returns the number.
+std::optional<unsigned long> take_number(std::string_view& text) {
+  unsigned long number = 0;
+  if (!text.starts_with(':')) return std::nullopt;
+  const auto [end, error] =
+      std::from_chars(text.data() + 1, text.data() + std::min<std::size_t>(text.size(), 8), number);
+  if (error != std::errc()) return std::nullopt;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return number;
+}
+
+struct Place {
+  std::string file;
+  unsigned long line = 0, column = 0;
+};
+
+/// Returns the place that a message begins with, as in "FILE:LINE:COLUMN: ".
+std::optional<Place> place_of(std::string_view message) {
+  message = message.substr(0, message.find('\n'));
+  for (std::size_t colon = message.find(':', 1); colon != message.npos; colon = message.find(':', colon + 1)) {
+    std::string_view rest = message.substr(colon);
+    const auto line = take_number(rest);
+    const auto column = line ? take_number(rest) : std::nullopt;
+    if (column && rest.starts_with(": ")) return Place{std::string(message.substr(0, colon)), *line, *column};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::string excerpt_for(const std::string& message) {
-  static const std::regex place("^([^\n]+?):([0-9]{1,7}):([0-9]{1,7}): ");
-  std::smatch match;
-  if (!std::regex_search(message, match, place)) return {};
-  const unsigned long number = std::stoul(match[2]), column = std::stoul(match[3]);
-  std::optional<std::string> line = line_of(match[1], number);
+  const std::optional<Place> place = place_of(message);
+  if (!place) return {};
+  const auto& [file, number, column] = *place;
+  std::optional<std::string> line = line_of(file, number);
   if (!line || line->size() > longest_line || column == 0) return {};
   const std::size_t before = bytes_of(*line, column - 1);
   std::string indent;

@@ -78,7 +78,9 @@ struct Lengths {
   }
 
   /// The rate of change of L/L0, 1/s.
-  __device__ __forceinline__ Number rate_of(const SpringMaterial& material) const {
+  template <class T>
+  __device__ __forceinline__ Number rate_of(const T& material) const {
+    static_assert(only_for<work, T>);
     Number rate = 0;
     if constexpr (actuation)
       rate = amplitude(material.wave) * __cosf(angle(material.wave)) *
@@ -87,7 +89,11 @@ struct Lengths {
   }
 
   /// The coefficient of the dashpot, units of force s/m.
-  __device__ __forceinline__ Number damping_of(const SpringMaterial& material) const { return material.coefficient; }
+  template <class T>
+  __device__ __forceinline__ Number damping_of(const T& material) const {
+    static_assert(only_for<dashpots, T>);
+    return material.coefficient;
+  }
 
   __device__ __forceinline__ void advance_rows(const Body&, unsigned rows_on) {
     row += rows_on * sizeof(unsigned);

@@ -49,12 +49,16 @@ struct Lengths {
   }
 
   /// The rate of change of L/L0, 1/s.
-  __device__ __forceinline__ Number rate_of(const SpringMaterial& material) const {
+  template <class T>
+  __device__ __forceinline__ Number rate_of(const T& material) const {
+    static_assert(only_for<work, T>);
     return on_chip<Number>(rates + material.table_entry / 2);
   }
 
   /// The coefficient of the dashpots, units of force s/m.
-  __device__ __forceinline__ Number damping_of(const SpringMaterial& material) const {
+  template <class T>
+  __device__ __forceinline__ Number damping_of(const T& material) const {
+    static_assert(only_for<dashpots, T>);
     return on_chip<Number>(coefficients + material.table_entry / 2);
   }
 

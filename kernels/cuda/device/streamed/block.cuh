@@ -59,7 +59,7 @@ __device__ __forceinline__ void advance_span(const Body& stored, std::uint64_t i
 
 /// Counts the contact of a mass at the end of a step.
 __device__ __forceinline__ void count_contact(const Body& body, unsigned mass, const Moving& m) {
-  if constexpr (contacts && floor_on) body.sampling.contact_steps[mass] += touches(body.constants, m);
+  if constexpr (contacts && has_floor) body.sampling.contact_steps[mass] += touches(body.constants, m);
 }
 
 /// Takes the samples that are due at the end of a step. Row `row` of the tables holds the lengths then.

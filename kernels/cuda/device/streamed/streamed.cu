@@ -33,7 +33,7 @@ extern "C" __global__ void evodevo_pass_streamed(const Body* bodies, std::uint64
     body.dashpot_velocities[(1 - half) * body.masses + mass] =
         point(Method::dashpot_velocity(body.constants, of_span, m, before));
   }
-  if constexpr (contacts && floor_on)
+  if constexpr (contacts && has_floor)
     if (Method::ends_motion(of_span)) body.sampling.contact_steps[mass] += touches(body.constants, m);
 }
 

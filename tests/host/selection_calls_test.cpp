@@ -1,0 +1,470 @@
+// The tables of selection operators and what check refuses, what the operators see, and what becomes of what they
+// choose, make, note and remember: their memory is committed with the generation, and given back when a run is resumed.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "commands/run/run.hpp"
+#include "evodevo/helpers/rows.hpp"
+#include "evodevo/helpers/selection/memory.hpp"
+#include "evolution/record_check.hpp"
+#include "evolution/selection_table.hpp"
+#include "support/changed.hpp"
+#include "support/experiments.hpp"
+#include "support/lives.hpp"
+#include "support/messages.hpp"
+#include "support/refusals.hpp"
+#include "support/scratch.hpp"
+
+namespace evodevo::EVODEVO_FILE {
+namespace {
+
+using ::testing::ElementsAre;
+
+Individual scored(std::uint32_t id, std::uint32_t origin, std::vector<double> objectives) {
+  Individual individual;
+  individual.id = id;
+  individual.origin = origin;
+  individual.genome = {1, 1};
+  individual.result.status = objectives.empty() ? Status::diverged : Status::ok;
+  individual.result.objectives = std::move(objectives);
+  return individual;
+}
+
+const std::string scenarios = "[[scenario]]\nname = \"flat\"\n[[scenario]]\nname = \"noisy\"\nrepeat = 2\n";
+
+TEST(SelectionTable, TurnsScoresAndCountsAges) {
+  const Experiment experiment = testing::read(testing::small_experiment);
+  std::vector<Individual> everyone = {scored(3, 0, {2, 5}), scored(8, 4, {})};
+  everyone.push_back(scored(9, 0, {1, 1}));
+  everyone.push_back(scored(10, 6, {1, 1}));
+  everyone[2].born = everyone[3].born = 6;
+  everyone[2].parents = {8, 3};
+  const SelectionTable table(everyone, experiment, 6);
+  const auto rows = table.rows();
+  EXPECT_THAT(rows[0].scores, ElementsAre(2, -5)) << "less work is better";
+  EXPECT_EQ(rows[0].age, 6u);
+  EXPECT_EQ(rows[1].age, 2u);
+  EXPECT_FALSE(rows[1].ok());
+  EXPECT_EQ(rows[1].status, Status::diverged);
+  EXPECT_FALSE(rows[0].challenges.has_value());
+  EXPECT_EQ(rows[2].challenges, 1u);
+  EXPECT_THAT(rows[2].parents, ElementsAre(8, 3));
+  EXPECT_FALSE(rows[3].challenges.has_value()) << "a random individual";
+  EXPECT_TRUE(rows[3].is_newborn && !rows[0].is_newborn);
+  EXPECT_EQ(rows[3].id, 10u);
+  EXPECT_EQ(rows[3].genome, &everyone[3].genome);
+  EXPECT_EQ(&table.context().layout, &experiment.layout);
+  EXPECT_EQ(table.context().generation, 6u);
+  EXPECT_THAT(rows[0].cases, ElementsAre(2, -5)) << "without scenarios, every objective is a case";
+  ASSERT_EQ(table.context().cases.size(), 2u);
+  EXPECT_EQ(table.context().cases[1].scenario, "");
+}
+
+TEST(SelectionTable, ShowsTheScoresOfEveryTest) {
+  const Experiment experiment = testing::read(testing::small_experiment + scenarios);
+  ASSERT_EQ(experiment.cases.size(), 6u) << "two objectives in three tests";
+  EXPECT_EQ(experiment.cases[2].scenario, "noisy");
+  EXPECT_EQ(experiment.cases[2].repeat, 1u);
+  EXPECT_EQ(experiment.cases[3].objective, 1u);
+  std::vector<Individual> everyone = {scored(0, 0, {2, 5}), scored(1, 0, {})};
+  for (const std::size_t objective : {0, 1}) {
+    everyone[0].result.tests.push_back({0, 0, objective, 10.0 + double(objective)});
+    everyone[0].result.tests.push_back({1, 0, objective, 20.0 + double(objective)});
+    everyone[0].result.tests.push_back({1, 1, objective, 30.0 + double(objective)});
+  }
+  const SelectionTable table(everyone, experiment, 0);
+  EXPECT_THAT(table.rows()[0].cases, ElementsAre(10, 20, 30, -11, -21, -31));
+  EXPECT_TRUE(table.rows()[1].cases.empty());
+}
+
+TEST(SelectionTable, ShowsDescriptorsAndHowFarAnIndividualIsFromFeasible) {
+  Experiment experiment = testing::read(testing::small_experiment);
+  experiment.measures = {{"limit", "N", true, Role::constraint},
+                         {"place", "m", true, Role::descriptor, -1, 3},
+                         {"note", "s", true, Role::measure},
+                         {"weight", "kg", true, Role::constraint}};
+  std::vector<Individual> everyone = {scored(0, 0, {1, 1}), scored(1, 0, {}), scored(2, 0, {})};
+  everyone[0].result.measures = {-1, 0.5, 7, 0};
+  everyone[1].result.status = Status::invalid;
+  everyone[1].result.measures = {0.25, 0.5, 7, 2};
+  const SelectionTable table(everyone, experiment, 0);
+  const auto rows = table.rows();
+  EXPECT_THAT(rows[0].descriptors, ElementsAre(0.5));
+  EXPECT_EQ(rows[0].violation, 0);
+  EXPECT_TRUE(rows[1].descriptors.empty());
+  EXPECT_EQ(rows[1].violation, 2.25) << "both constraints";
+  EXPECT_EQ(rows[2].violation, std::numeric_limits<double>::infinity()) << "it diverged";
+  ASSERT_EQ(table.context().descriptors.size(), 1u);
+  EXPECT_EQ(table.context().descriptors[0].high, 3);
+}
+
+TEST(Rows, OfThoseThatFailedTheLeastInfeasibleComeFirst) {
+  const std::vector<double> score = {-100};
+  std::vector<Candidate> rows(4);
+  rows[0].violation = std::numeric_limits<double>::infinity();
+  rows[1].violation = 3;
+  rows[2].scores = score;
+  rows[3].violation = 0.5;
+  EXPECT_THAT(best_first(rows), ElementsAre(2, 3, 1, 0));
+}
+
+/// Makes children with gene values that say what it saw; the last child has a parent and a mate.
+struct Maker final : Selection {
+  std::vector<Child> children(const SelectionContext& context, std::uint32_t count, Rng&) const override {
+    std::vector<Child> children(count + excess, Child{Genome(context.layout.first_size(), value)});
+    if (context.rows.size() > 2) children.back().parents = parents;
+    return children;
+  }
+  std::uint32_t excess = 0;
+  float value = 1;
+  std::vector<std::uint32_t> parents = {2, 1};
+};
+
+struct Making : ::testing::Test {
+  Making() {
+    experiment.selection.reset(maker);
+    experiment.child_maker = "maker";
+  }
+  std::string fault() {
+    return testing::refusal<std::runtime_error>([&] { breed(experiment, population, 9, 100, 4); });
+  }
+  Experiment experiment = testing::read(testing::small_experiment);
+  Maker* maker = new Maker;
+  std::vector<Individual> population = {scored(4, 7, {1, 1}), scored(5, 2, {1, 1}), scored(6, 3, {1, 1})};
+};
+
+TEST_F(Making, ASelectionMakesTheChildrenItself) {
+  experiment.random_individuals = 1;
+  const std::vector<Individual> newborns = breed(experiment, population, 9, 100, 4);
+  ASSERT_EQ(newborns.size(), 4u);
+  EXPECT_EQ(newborns[0].made_by, "maker");
+  EXPECT_EQ(newborns[0].id, 100u);
+  EXPECT_EQ(newborns[0].genome, newborns[1].genome) << "clones stay as they are";
+  EXPECT_TRUE(newborns[0].parents.empty());
+  EXPECT_EQ(newborns[0].origin, 9u) << "the age of a child without parents counts from its birth";
+  EXPECT_THAT(newborns[2].parents, ElementsAre(6, 5));
+  EXPECT_EQ(newborns[2].origin, 2u) << "that of a child with parents from their oldest genes";
+  EXPECT_EQ(newborns[3].made_by, "random");
+  experiment.random_individuals = 0;
+  for (const Individual& newborn : breed(experiment, {}, 0, 0, 4))
+    EXPECT_EQ(newborn.made_by, "maker") << "in the first generation too";
+}
+
+TEST_F(Making, FaultsOfTheOperatorAreNamed) {
+  experiment.random_individuals = 0;
+  const auto says = [](const auto&... parts) { return testing::naming("selection operator", parts...); };
+  maker->excess = 2;
+  EXPECT_THAT(fault(), says("6 children", "4"));
+  maker->excess = 0;
+  maker->value = 1000;
+  EXPECT_THAT(fault(), says("1000"));
+  maker->value = 1;
+  maker->parents = {0, 3};
+  EXPECT_THAT(fault(), says("row 3", "3 rows"));
+  maker->parents = {0, 1, 2};
+  EXPECT_THAT(fault(), says("3 parents", "0 to 2"));
+}
+
+/// Remembers how often it was called, and notes that about the first row. It could also note a sum.
+struct Counting final : Selection {
+  std::vector<NoteTitle> notes() const override { return {{"calls"}, {"sum", "ids"}}; }
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> couples(const SelectionContext& context, std::uint32_t count,
+                                                               Rng& rng) const override {
+    EXPECT_EQ(calls_in(context), apart ? 0 : context.generation) << "parents are chosen with the memory";
+    return draw_pairs(context.rows, count, rng, draw_any);
+  }
+  Survival survive(const SelectionContext& context, std::uint32_t population, Rng&) const override {
+    Survival survival{best_first(context.rows)};
+    survival.rows.resize(std::min<std::size_t>(survival.rows.size(), population));
+    const std::uint64_t calls = calls_in(context) + 1;
+    EXPECT_EQ(calls, context.generation + 1u);
+    MemoryWriter writer;
+    writer.write(calls);
+    survival.memory = writer.bytes();
+    survival.notes = {{0, 0, static_cast<double>(calls)}};
+    if (fault) fault(survival);
+    return survival;
+  }
+  static std::uint64_t calls_in(const SelectionContext& context) {
+    return context.memory.empty() ? 0 : MemoryReader(context.memory).read<std::uint64_t>();
+  }
+
+  bool apart = false;
+  std::function<void(Survival&)> fault;
+};
+
+class Remembering : public ::testing::Test {
+ protected:
+  Remembering() {
+    experiment_.selection.reset(counting_);
+    experiment_.notes = counting_->notes();
+  }
+  /// Evolves until so many generations have been committed.
+  void evolve_to(Archive& archive, std::size_t generations) { testing::evolve_to(generations, experiment_, archive); }
+  Archive evolved(std::size_t generations) {
+    Archive archive = Archive::create(scratch_ / "run", experiment_, "test");
+    evolve_to(archive, generations);
+    return archive;
+  }
+  std::string fault_of(const std::function<void(Survival&)>& fault) {
+    counting_->fault = fault;
+    Archive archive = Archive::create(scratch_ / ("fault" + std::to_string(faults_++)), experiment_, "test");
+    const std::string said = testing::refusal<std::runtime_error>([&] { evolve_to(archive, 1); });
+    EXPECT_TRUE(archive.generations().empty());
+    return said;
+  }
+
+  testing::Scratch scratch_;
+  Experiment experiment_ = testing::read(testing::small_experiment);
+  Counting* counting_ = new Counting;
+  int faults_ = 0;
+};
+
+TEST_F(Remembering, IsCommittedWithTheGenerationAndGivenBack) {
+  EXPECT_TRUE(Archive::create(scratch_ / "new", experiment_, "test").memory().empty());
+  EXPECT_EQ(MemoryReader(evolved(2).memory()).read<std::uint64_t>(), 2u);
+  Archive archive = Archive::resume(scratch_ / "run");
+  check_resumable(archive, experiment_);
+  evolve_to(archive, 4);
+  EXPECT_EQ(MemoryReader(archive.memory()).read<std::uint64_t>(), 4u);
+}
+
+TEST_F(Remembering, NotesOfAnIndividualAreTheLastOnes) {
+  const Archive archive = evolved(3);
+  std::size_t noted = 0;
+  double last = 0;
+  for (std::uint32_t id = 0; id < 18; ++id)
+    for (const ArchivedNote& note : archive.notes(id)) {
+      ++noted;
+      EXPECT_EQ(note.name, "calls");
+      last = std::max(last, note.value);
+    }
+  EXPECT_EQ(last, 3);
+  EXPECT_LE(noted, 3u);
+  EXPECT_EQ(archive.note_titles().at(1).unit, "ids");
+}
+
+TEST_F(Remembering, AnotherOperatorForParentsHasNoMemory) {
+  auto parents = std::make_unique<Counting>();
+  parents->apart = true;
+  experiment_.parent_selection = std::move(parents);
+  EXPECT_EQ(MemoryReader(evolved(3).memory()).read<std::uint64_t>(), 3u);
+}
+
+TEST_F(Remembering, FaultsAreNamedBeforeAnythingIsCommitted) {
+  EXPECT_THAT(fault_of([](Survival& s) {
+                s.notes.push_back({0, 1, NAN});
+              }),
+              testing::naming("selection operator", "sum", "finite"));
+  EXPECT_THAT(fault_of([](Survival& s) { s.notes.push_back({0, 2, 1}); }), testing::naming("number 2", "2 numbers"));
+  EXPECT_THAT(fault_of([](Survival& s) { s.notes.push_back({0, 0, 2}); }), testing::naming("calls", "twice", "row 0"));
+  EXPECT_THAT(fault_of([](Survival& s) { s.notes.push_back({99, 0, 1}); }), testing::naming("row 99", "6 rows"));
+  EXPECT_THAT(fault_of([](Survival& s) { s.rows.push_back(s.rows[0]); }), testing::naming("survivors", "different"));
+  EXPECT_THAT(fault_of([](Survival& s) { s.memory.resize((std::size_t{128} << 20) + 1); }),
+              testing::naming("134217729", "134217728"));
+}
+
+TEST_F(Remembering, TheRecordOfAnotherOperatorIsRefused) {
+  const Archive archive = evolved(1);
+  experiment_.notes = {{"calls"}};
+  EXPECT_THAT(testing::refusal<ArchiveError>([&] { check_resumable(archive, experiment_); }),
+              testing::naming("sum in ids", "calls in 1"));
+}
+
+/// Makes children that are all equal, and counts those that it sees again.
+struct Twins final : Selection {
+  std::vector<Child> children(const SelectionContext& context, std::uint32_t count, Rng&) const override {
+    return std::vector<Child>(count, {Genome(context.layout.first_size(), 1)});
+  }
+  Survival survive(const SelectionContext& context, std::uint32_t, Rng&) const override {
+    const auto newborns =
+        std::count_if(context.rows.begin(), context.rows.end(), [](const Candidate& row) { return row.is_newborn; });
+    return {{0}, {static_cast<std::byte>(newborns)}};
+  }
+};
+
+TEST_F(Remembering, AnOperatorSeesAllChildrenThatItHasMadeItself) {
+  experiment_.selection = std::make_unique<Twins>();
+  experiment_.notes.clear();
+  experiment_.child_maker = "twins";
+  experiment_.random_individuals = 0;
+  experiment_.children = 4;
+  experiment_.development.cycles = 0;  // equal genes have equal scores, because development draws no random numbers
+  const auto seen = [&](const char* folder) {
+    Archive archive = Archive::create(scratch_ / folder, experiment_, "test");
+    evolve_to(archive, 2);
+    EXPECT_EQ(archive.generations().back().evaluations, 8) << "four in each generation, the first included";
+    EXPECT_EQ(archive.generations().back().clones, 4);
+    return std::to_integer<int>(archive.memory().at(0));
+  };
+  EXPECT_EQ(seen("own"), 4);
+  experiment_.parent_selection = std::make_unique<Twins>();
+  EXPECT_EQ(seen("apart"), 1) << "copies are removed if another operator chooses the survivors";
+}
+
+TEST(Memory, IsReadAsItWasWritten) {
+  const std::vector<std::vector<double>> lists{{1, 2}, {}, {3}};
+  MemoryWriter writer;
+  writer.write(std::uint32_t{7});
+  writer.write(std::vector<float>{1.5F, -2});
+  writer.write(-0.0);
+  writer.write(std::vector<double>{});
+  writer.write(lists);
+  MemoryReader reader(writer.bytes());
+  EXPECT_EQ(reader.read<std::uint32_t>(), 7u);
+  EXPECT_EQ(reader.read_list<float>(), (std::vector<float>{1.5F, -2}));
+  EXPECT_TRUE(std::signbit(reader.read<double>()));
+  EXPECT_TRUE(reader.read_list<double>().empty());
+  EXPECT_EQ(reader.read_lists<double>(), lists);
+  reader.finish();
+}
+
+TEST(Memory, ThatIsTooShortOrTooLongOrNotFiniteIsRefused) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  MemoryWriter writer;
+  writer.write(std::vector<double>{1, 1e300, 3});
+  EXPECT_THROW(MemoryWriter().write(infinity), std::runtime_error);
+  EXPECT_THROW(MemoryWriter().write(std::vector<float>{0, std::nanf("")}), std::runtime_error);
+  std::vector<std::byte> bytes = writer.bytes();
+  std::memcpy(bytes.data() + sizeof(std::uint64_t), &infinity, sizeof infinity);
+  EXPECT_THROW(MemoryReader(bytes).read_list<double>(), std::runtime_error);
+  const std::span<const std::byte> all = writer.bytes();
+  for (std::size_t left = 0; left < all.size(); ++left) {
+    MemoryReader reader(all.first(left));
+    EXPECT_THROW(reader.read_list<double>(), std::runtime_error) << left;
+  }
+  MemoryReader reader(all);
+  reader.read<std::uint64_t>();
+  EXPECT_THAT([&] { reader.finish(); }, ::testing::ThrowsMessage<std::runtime_error>(::testing::HasSubstr("24")));
+  MemoryWriter huge;
+  huge.write(std::numeric_limits<std::uint64_t>::max());
+  EXPECT_THROW(MemoryReader(huge.bytes()).read_list<double>(), std::runtime_error) << "no memory is allocated for it";
+  EXPECT_THROW(MemoryReader(huge.bytes()).read_lists<double>(), std::runtime_error) << "nor for lists";
+}
+
+namespace fs = std::filesystem;
+
+const std::string voxel = "name = \"voxel\"\nsize = [2, 1, 1]\nedge = 0.5\n";
+const std::string mutation = "[[mutation]]\nname = \"reset-weight\"\nprobability = 0.8\n\n";
+const std::string crossover = "[[crossover]]\nname = \"two-point\"\nprobability = 0.5\n\n";
+const std::string selection = "[selection]\nname = \"age-fitness-pareto\"\n";
+const std::string descriptor = "[[fitness]]\nname = \"descriptor\"\nsettle = 0.05\nwindow = 0.1\n";
+
+/// A table of selection, such as `[selection.parents]`, with the operator of this name.
+std::string table(const std::string& kind, const std::string& name) {
+  return "[" + kind + "]\nname = \"" + name + "\"\n";
+}
+std::string apart(const std::string& parents, const std::string& survivors) {
+  return table("selection.parents", parents) + table("selection.survivors", survivors);
+}
+
+using Changes = std::vector<std::pair<std::string, std::string>>;
+
+/// The small experiment with another selection.
+std::string selecting(const std::string& tables) { return testing::small_with({{selection, tables}}); }
+
+/// An experiment without variation whose genes are real.
+std::string sampling(const std::string& tables, Changes changes = {}) {
+  changes.insert(changes.end(), {{selection, tables},
+                                 {mutation, ""},
+                                 {crossover, ""},
+                                 {"random_individuals = 1\n", ""},
+                                 {voxel, "name = \"neural\"\npoints = 12\nneighbours = 4\n"}});
+  return testing::small_with(changes);
+}
+
+Experiment read(const std::string& text) {
+  const fs::path folder = EVODEVO_FAULTY_PLUGINS;
+  return read_experiment(text, {"test.toml", {}, {folder / "special", folder / "novelty", folder / "cross_entropy"}});
+}
+
+std::string complaint(const std::string& text) {
+  return testing::refusal<ConfigError>([&] { read(text); });
+}
+
+TEST(SelectionSettings, ParentsAndSurvivorsCanHaveOperatorsOfTheirOwn) {
+  const Experiment experiment = read(selecting(apart("lottery", "best")));
+  ASSERT_TRUE(experiment.selection && experiment.parent_selection);
+  EXPECT_EQ(&experiment.breeder(), experiment.parent_selection.get());
+  EXPECT_THAT(experiment.call_of(Selection::kind, experiment.breeder_index()).title->whole,
+              ::testing::HasSubstr("lottery"));
+  EXPECT_EQ(testing::read(experiment.resolved).resolved, experiment.resolved);
+  const Experiment both = read(selecting(selection));
+  EXPECT_EQ(&both.breeder(), both.selection.get());
+}
+
+TEST(SelectionSettings, OperatorsForBothHalvesAreNeeded) {
+  EXPECT_THAT(complaint(selecting(table("selection.parents", "lottery"))),
+              testing::at_place("test.toml:", "selection.survivors", "[selection.survivors]"));
+  EXPECT_THAT(complaint(selecting(table("selection.survivors", "best"))),
+              testing::at_place("test.toml:", "selection.parents", "[selection.parents]"));
+  EXPECT_THAT(complaint(selecting(table("selection", "elitist") + apart("lottery", "best"))),
+              testing::naming("selection.name"));
+  EXPECT_THAT(complaint(selecting(table("selection", "lottery"))),
+              testing::naming("selection.name = \"lottery\"", "chooses_survivors", "[selection.parents]"));
+  EXPECT_THAT(complaint(selecting(table("selection", "best"))),
+              testing::naming("selection.name = \"best\"", "chooses_parents", "[selection.survivors]"));
+}
+
+TEST(SelectionSettings, AnOperatorThatNeedsAMemoryCannotChooseParentsAlone) {
+  EXPECT_THAT(complaint(selecting(apart("species", "best"))),
+              testing::naming("selection.parents.name = \"species\"", "needs_memory", "[selection]"));
+  EXPECT_THAT(complaint(sampling(apart("cma-es", "best"))),
+              testing::naming("selection.parents.name = \"cma-es\"", "needs_memory", "[selection]"));
+  EXPECT_TRUE(read(selecting(apart("lottery", "species"))).parent_selection);
+}
+
+TEST(SelectionSettings, AnOperatorThatNeedsMoreIndividualsIsRefused) {
+  const auto with = [](const std::string& name, const std::string& keys) {
+    return sampling(table("selection", name), {{"population = 6\n", keys}});
+  };
+  EXPECT_THAT(complaint(with("differential", "population = 3\nchildren = 9\n")),
+              testing::naming("selection.name = \"differential\"", "population = 4", "has 3", "[experiment]"));
+  EXPECT_EQ(read(with("differential", "population = 4\nchildren = 1\n")).population, 4);
+  EXPECT_THAT(complaint(with("cma-es", "population = 9\nchildren = 1\n")),
+              testing::naming("selection.name = \"cma-es\"", "children = 2", "has 1", "[experiment]"));
+  EXPECT_THAT(complaint(with("cma-es", "population = 1\n")), testing::naming("population = 2", "has 1"));
+  EXPECT_EQ(read(with("cma-es", "population = 1\nchildren = 2\n")).newborns(), 2);
+}
+
+TEST(SelectionSettings, AnOperatorThatNeedsMoreScoresIsRefused) {
+  EXPECT_THAT(complaint(selecting(table("selection", "outside.novelty"))),
+              testing::naming("selection.name = \"outside.novelty\"", "1 descriptor", "give 0", "[[fitness]]"));
+  const Experiment novelty = read(selecting(descriptor + table("selection", "outside.novelty")));
+  ASSERT_EQ(novelty.notes.size(), 1u);
+  EXPECT_EQ(novelty.notes[0].name, "novelty");
+  EXPECT_THAT(complaint(selecting(apart("three-goals", "best"))),
+              testing::naming("selection.parents.name = \"three-goals\"", "3 objective", "give 2"));
+}
+
+TEST(SelectionSettings, AnOperatorThatMakesTheChildrenNeedsNoVariationAndRealGenes) {
+  const std::string sampler = table("selection", "outside.cross-entropy");
+  const Experiment experiment = read(sampling(sampler));
+  EXPECT_TRUE(experiment.makes_children());
+  EXPECT_EQ(experiment.random_individuals, 0) << "unless the experiment asks for them";
+  EXPECT_EQ(read(experiment.resolved).random_individuals, 0);
+  EXPECT_EQ(read(sampling(sampler, {{"seed = 7", "seed = 7\nrandom_individuals = 2"}})).random_individuals, 2);
+  EXPECT_THAT(complaint(sampling(sampler) + mutation), testing::naming("mutation", "outside.cross-entropy", "remove"));
+  EXPECT_THAT(complaint(sampling(sampler) + crossover),
+              testing::naming("crossover", "outside.cross-entropy", "remove"));
+  EXPECT_THAT(complaint(testing::small_with({{selection, sampler}, {mutation, ""}, {crossover, ""}})),
+              testing::naming("selection.name", "\"voxel\"", "needs_real_genes", "encoding"));
+  EXPECT_THAT(complaint(testing::small_with({{mutation, ""}, {crossover, ""}})),
+              testing::naming("mutation", "[[mutation]]"));
+}
+
+TEST(SelectionSettings, GenerationsHaveAsManyChildrenAsAsked) {
+  const auto with = [](const std::string& keys) { return testing::small_with({{"random_individuals = 1\n", keys}}); };
+  EXPECT_EQ(read(testing::small_experiment).newborns(), 6) << "as many as the population";
+  EXPECT_EQ(read(with("children = 9\n")).newborns(), 9);
+  EXPECT_EQ(read(with("children = 9\nrandom_individuals = 9\n")).random_individuals, 9);
+  EXPECT_THAT(complaint(with("children = 3\nrandom_individuals = 4\n")),
+              testing::at_place("test.toml:7:22: experiment.random_individuals = 4: ", "children", "3"));
+}
+
+}  // namespace
+}  // namespace evodevo::EVODEVO_FILE
