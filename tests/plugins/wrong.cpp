@@ -222,21 +222,21 @@ struct Mutation final : evodevo::Mutation {
   }
 };
 
-template <class Kind>
-constexpr evodevo::OperatorEntry entry = evodevo::operator_entry<Kind>("wrong", "Breaks one rule.");
-
 /// Returns the operator of the kind whose rule is broken.
 constexpr evodevo::OperatorEntry wrong() {
+  using evodevo::operator_entry;
+  constexpr const char *name = "wrong", *summary = "Breaks one rule.";
   const auto is_one_of = [](auto... faults) { return ((fault == faults) || ...); };
-  if constexpr (is_one_of("twins", "changes_crossover")) return entry<Crossover>;
-  if constexpr (fault.starts_with("decoding")) return entry<Encoding>;
-  if constexpr (fault.starts_with("bodies") || fault == "names_measure") return entry<Devo>;
+  if constexpr (is_one_of("twins", "changes_crossover")) return operator_entry<Crossover>(name, summary);
+  if constexpr (fault.starts_with("decoding")) return operator_entry<Encoding>(name, summary);
+  if constexpr (fault.starts_with("bodies") || fault == "names_measure") return operator_entry<Devo>(name, summary);
   if constexpr (is_one_of("translation", "nan_hidden", "objectives", "objectives_nan", "names_objective", "names_unit"))
-    return entry<Fitness>;
-  if constexpr (is_one_of("generations", "generations_note", "generations_children")) return entry<Generations>;
-  if constexpr (is_one_of("order_memory", "generations_memory")) return entry<Remembering>;
-  if constexpr (is_one_of("order", "elite", "failed")) return entry<Selection>;
-  return entry<Mutation>;
+    return operator_entry<Fitness>(name, summary);
+  if constexpr (is_one_of("generations", "generations_note", "generations_children"))
+    return operator_entry<Generations>(name, summary);
+  if constexpr (is_one_of("order_memory", "generations_memory")) return operator_entry<Remembering>(name, summary);
+  if constexpr (is_one_of("order", "elite", "failed")) return operator_entry<Selection>(name, summary);
+  return operator_entry<Mutation>(name, summary);
 }
 
 }  // namespace
