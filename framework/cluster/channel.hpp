@@ -10,6 +10,7 @@ namespace evodevo {
 
 constexpr std::chrono::microseconds between_looks{500};  ///< at the channel
 constexpr std::chrono::seconds between_beats{1};         ///< with which a rank says that it is there
+constexpr int setup_patience = 4;  ///< times the patience, since ranks may load operators from a slow file system
 
 /// A message, and the rank that sent it.
 struct Received {

@@ -11,8 +11,6 @@
 namespace evodevo {
 namespace {
 
-constexpr int setup_patience = 4;  // ranks may load operators from a slow file system
-
 std::vector<message::JobItem> items_of(std::span<const Newborn> newborns) {
   std::vector<message::JobItem> items;
   for (const Newborn& newborn : newborns) items.push_back({newborn.id, newborn.generation, 0, *newborn.genome});

@@ -3,11 +3,6 @@
 #include "base/input_error.hpp"
 
 namespace evodevo {
-namespace {
-
-constexpr int setup_patience = 4;  // ranks may load operators from a slow file system
-
-}  // namespace
 
 void Post::Shared::send(int to, std::string bytes) {
   const std::lock_guard lock(mutex_);

@@ -101,7 +101,7 @@ void SampleTable::set_rows(const std::vector<std::uint8_t>& fails, Rng& rng) {
     }
     lists.scores = scores;
     lists.descriptors = draw(descriptors_.size(), -1.2, 1.2);
-    for (const Case& one : cases_)
+    for (const evodevo::Case& one : cases_)
       lists.cases.push_back(one.scenario.empty() ? scores[one.objective] : rng.uniform(-5, 5));
   }
 }

@@ -42,7 +42,7 @@ class SampleTable {
   void refer();
 
   std::vector<Objective> objectives_, descriptors_;
-  std::vector<Case> cases_;
+  std::vector<evodevo::Case> cases_;
   Layout layout_;
   std::vector<Lists> lists_;
   std::vector<Candidate> rows_;

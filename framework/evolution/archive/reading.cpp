@@ -13,7 +13,7 @@
 namespace evodevo {
 namespace {
 
-constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
+constexpr std::int64_t no_limit = std::numeric_limits<std::int64_t>::max();
 constexpr std::int64_t most_ids = std::int64_t{1} << 32;  ///< largest number of evaluations, each of which uses one id
 
 constexpr std::array statuses_known{Status::ok, Status::invalid, Status::diverged, Status::artefact, Status::passive};
@@ -38,7 +38,7 @@ std::optional<double> seconds_in(const std::string& text) {
 std::int64_t count_of(const RunDatabase& run, const std::string& table) {
   Statement row(run, table, "SELECT count(*) FROM " + table);
   row.step();
-  return row.integer(0, 0, most);
+  return row.integer(0, 0, no_limit);
 }
 
 constexpr const char* individual_columns =
@@ -119,7 +119,7 @@ class Individuals {
     result.status = status_in(row_, 7);
     result.reason = line_or_empty(row_, 8);
     result.ended_at = row_.optional_number(9).value_or(0);
-    result.spring_evaluations = static_cast<std::uint64_t>(row_.integer(10, 0, most));
+    result.spring_evaluations = static_cast<std::uint64_t>(row_.integer(10, 0, no_limit));
   }
 
   void read_scores(ArchivedIndividual& individual) {
@@ -157,7 +157,7 @@ class Individuals {
     tests_.bind(individual.id);
     while (tests_.step())
       individual.result.tests.push_back(
-          {static_cast<std::size_t>(tests_.integer(0, 0, scenarios_ - 1)), tests_.integer(1, 0, most),
+          {static_cast<std::size_t>(tests_.integer(0, 0, scenarios_ - 1)), tests_.integer(1, 0, no_limit),
            static_cast<std::size_t>(tests_.integer(2, 0, objectives_ - 1)), tests_.number(3)});
   }
 
@@ -228,7 +228,7 @@ std::vector<Provenance> Archive::provenances() const {
 std::vector<std::int64_t> Archive::evaluated_by_provenance() const {
   std::vector<std::int64_t> counts(provenances().size());
   Statement row(*run_, "individuals", "SELECT provenance, count(*) FROM individuals GROUP BY provenance");
-  while (row.step()) counts[row.index(0, static_cast<std::uint32_t>(counts.size() - 1))] = row.integer(1, 0, most);
+  while (row.step()) counts[row.index(0, static_cast<std::uint32_t>(counts.size() - 1))] = row.integer(1, 0, no_limit);
   return counts;
 }
 
@@ -304,7 +304,7 @@ std::vector<Summary> Archive::generations() const {
     summary.artefact = row.integer(6, 0, summary.evaluations);
     summary.passive = row.integer(7, 0, summary.evaluations);
     summary.clones = row.integer(8, 0, summary.evaluations);
-    summary.spring_evaluations = static_cast<std::uint64_t>(row.integer(9, 0, most));
+    summary.spring_evaluations = static_cast<std::uint64_t>(row.integer(9, 0, no_limit));
     summary.wall_time = row.number(10);
   }
   return summaries;
@@ -314,7 +314,7 @@ std::map<std::string, std::int64_t> Archive::statuses() const {
   std::map<std::string, std::int64_t> counts;
   for (const Status status : statuses_known) counts[name(status)] = 0;
   Statement row(*run_, "individuals", "SELECT status, count(*) FROM individuals GROUP BY status");
-  while (row.step()) counts[name(status_in(row, 0))] = row.integer(1, 0, most);
+  while (row.step()) counts[name(status_in(row, 0))] = row.integer(1, 0, no_limit);
   return counts;
 }
 
@@ -327,7 +327,7 @@ std::vector<Failure> Archive::failures() const {
     const std::string status = name(status_in(row, 0)), reason = line_or_empty(row, 1);
     const std::string alike = reason.substr(0, reason.find_first_of("0123456789"));
     Failure& failure = failures.try_emplace({status, alike}, Failure{status, reason}).first->second;
-    failure.count += row.integer(2, 0, most);
+    failure.count += row.integer(2, 0, no_limit);
     failure.varies |= failure.reason != reason;
   }
   std::vector<Failure> sorted;
