@@ -16,9 +16,9 @@
 namespace evodevo::conformance {
 namespace {
 
-using conformance::numbers_of;  // which the overloads below would otherwise hide
-
+// which the overloads below would otherwise hide
 using conformance::append;
+using conformance::numbers_of;
 
 void append(Numbers& numbers, std::initializer_list<double> more) { numbers.insert(numbers.end(), more); }
 void append(Numbers& numbers, Vec3 v) { append(numbers, {v.x, v.y, v.z}); }

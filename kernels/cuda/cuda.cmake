@@ -76,6 +76,6 @@ set(cuda_sources
   cuda/runtime/portion.cpp
   ${embedded_sources})
 target_sources(evodevo_kernels PRIVATE ${cuda_sources})
-set_source_files_properties(${cuda_sources} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)  # they share names of their own
+set_source_files_properties(${cuda_sources} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)  # several have private names alike
 target_compile_definitions(evodevo_kernels PUBLIC EVODEVO_CUDA)
 target_link_libraries(evodevo_kernels PRIVATE CUDA::cudart CUDA::nvrtc)
