@@ -24,19 +24,15 @@ const char* instruction_set() {
   }
 }
 
-// defined in cpu/methods/
-template <class T>
-cpu::Integrator<T> paper_euler();
-template <class T>
-cpu::Integrator<T> symplectic_euler();
-template <class T>
-cpu::Integrator<T> velocity_verlet();
-template <class T>
-cpu::Integrator<T> rk4();
-template <class T>
-cpu::Integrator<T> implicit();
-template <class T>
-cpu::Integrator<T> xpbd();
+// the methods, each in a file of cpu/methods/
+struct PaperEuler;
+struct SymplecticEuler;
+struct VelocityVerlet;
+struct Rk4;
+struct Implicit;
+struct Xpbd;
+template <class M, class T>
+cpu::Integrator<T> integrator();
 
 template <class T>
 const cpu::Kernels<T>* kernels_of() {
@@ -46,7 +42,8 @@ const cpu::Kernels<T>* kernels_of() {
       .lanes = lanes,
       .table_size = 16,
       .actuate = actuate<T>,
-      .integrator = {paper_euler<T>(), symplectic_euler<T>(), velocity_verlet<T>(), rk4<T>(), implicit<T>(), xpbd<T>()},
+      .integrator = {integrator<PaperEuler, T>(), integrator<SymplecticEuler, T>(), integrator<VelocityVerlet, T>(),
+                     integrator<Rk4, T>(), integrator<Implicit, T>(), integrator<Xpbd, T>()},
       .energies = energies<T>};
   return &kernels;
 }

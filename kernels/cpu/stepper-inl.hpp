@@ -92,8 +92,9 @@ void advance(const cpu::Motion<T>& motion, const cpu::StepConstants<T>& constant
   }
 }
 
+/// The method M. Each method's file instantiates it for both precisions.
 template <class M, class T>
-constexpr cpu::Integrator<T> integrator() {
+cpu::Integrator<T> integrator() {
   return {M::rows_per_step, M::mass_arrays, M::slot_arrays, M::coloured, advance<M, T>};
 }
 

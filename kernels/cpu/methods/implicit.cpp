@@ -289,12 +289,8 @@ struct Implicit : ImplicitFloor {
   }
 };
 
-template <class T>
-cpu::Integrator<T> implicit() {
-  return integrator<Implicit, T>();
-}
-template cpu::Integrator<float> implicit();
-template cpu::Integrator<double> implicit();
+template cpu::Integrator<float> integrator<Implicit, float>();
+template cpu::Integrator<double> integrator<Implicit, double>();
 
 }  // namespace evodevo::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

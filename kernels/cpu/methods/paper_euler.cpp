@@ -30,12 +30,8 @@ struct PaperEuler : StepMethod {
   }
 };
 
-template <class T>
-cpu::Integrator<T> paper_euler() {
-  return integrator<PaperEuler, T>();
-}
-template cpu::Integrator<float> paper_euler();
-template cpu::Integrator<double> paper_euler();
+template cpu::Integrator<float> integrator<PaperEuler, float>();
+template cpu::Integrator<double> integrator<PaperEuler, double>();
 
 }  // namespace evodevo::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -257,12 +257,8 @@ struct Rk4 : StepMethod {
   }
 };
 
-template <class T>
-cpu::Integrator<T> rk4() {
-  return integrator<Rk4, T>();
-}
-template cpu::Integrator<float> rk4();
-template cpu::Integrator<double> rk4();
+template cpu::Integrator<float> integrator<Rk4, float>();
+template cpu::Integrator<double> integrator<Rk4, double>();
 
 }  // namespace evodevo::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

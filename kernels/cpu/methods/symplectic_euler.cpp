@@ -30,12 +30,8 @@ struct SymplecticEuler : StepMethod {
   }
 };
 
-template <class T>
-cpu::Integrator<T> symplectic_euler() {
-  return integrator<SymplecticEuler, T>();
-}
-template cpu::Integrator<float> symplectic_euler();
-template cpu::Integrator<double> symplectic_euler();
+template cpu::Integrator<float> integrator<SymplecticEuler, float>();
+template cpu::Integrator<double> integrator<SymplecticEuler, double>();
 
 }  // namespace evodevo::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -80,12 +80,8 @@ struct VelocityVerlet : StepMethod {
   }
 };
 
-template <class T>
-cpu::Integrator<T> velocity_verlet() {
-  return integrator<VelocityVerlet, T>();
-}
-template cpu::Integrator<float> velocity_verlet();
-template cpu::Integrator<double> velocity_verlet();
+template cpu::Integrator<float> integrator<VelocityVerlet, float>();
+template cpu::Integrator<double> integrator<VelocityVerlet, double>();
 
 }  // namespace evodevo::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

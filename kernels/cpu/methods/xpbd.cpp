@@ -204,12 +204,8 @@ struct Xpbd : StepMethod {
   }
 };
 
-template <class T>
-cpu::Integrator<T> xpbd() {
-  return integrator<Xpbd, T>();
-}
-template cpu::Integrator<float> xpbd();
-template cpu::Integrator<double> xpbd();
+template cpu::Integrator<float> integrator<Xpbd, float>();
+template cpu::Integrator<double> integrator<Xpbd, double>();
 
 }  // namespace evodevo::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
