@@ -115,7 +115,9 @@ TEST_F(Interruption, WhileARunGoesOnOthersLookAndVerifyButOnlyItWritesUntilItsFo
   const std::string folder = path("run");
   Process process(run_command("run", {"--set", "experiment.evaluations=6000", "--set", "experiment.verify=0"}));
   process.read_line();
-  EXPECT_THAT(output_of(resume_command("run"), 2), naming("evodevo: " + folder + ": another evodevo process", "stop"));
+  const std::string refusal = output_of(resume_command("run"), 2);
+  EXPECT_THAT(refusal, naming("evodevo: " + folder + ": another evodevo process", "stop"));
+  EXPECT_EQ(std::count(refusal.begin(), refusal.end(), '\n'), 1) << refusal;
   process.read_line();  // the first generation
   said({"show", folder});
   for (int i = 0; i < 2; ++i) {

@@ -103,7 +103,7 @@ TEST_F(Compiler, CallsNoFunctionOfAFeatureThatIsOff) {
 }
 
 /// Kernels that keep a body on the chip have 64 registers per thread, and with many features that is too little.
-TEST_F(Compiler, KeepsAllInRegistersWhereTheySuffice) {
+TEST_F(Compiler, CompilesEveryFormAndKeepsAllInRegistersWhereTheySuffice) {
   const auto expect_registers_to_suffice = [](const Form& form, const Features& features, const char* kernel) {
     const auto code = tools::bench::machine_code(compiled(form, features)).at(kernel);
     EXPECT_GT(code.instructions, 0u) << form.name;
@@ -116,6 +116,8 @@ TEST_F(Compiler, KeepsAllInRegistersWhereTheySuffice) {
       expect_registers_to_suffice(forms.back(), features, "evodevo_pass_streamed");
     for (const std::size_t resident : {0, 2})
       expect_registers_to_suffice(forms[resident], none, "evodevo_run_resident");
+    for (const Form& form : forms)
+      for (const Features& features : {none, all}) EXPECT_FALSE(compiled(form, features).empty()) << form.name;
   }
 }
 

@@ -21,7 +21,7 @@ using test::all_methods, test::all_records, test::all_ways, test::explicit_ways,
     if (missing.empty()) break;                                      \
     const char* required = std::getenv("EVODEVO_REQUIRE_GPU");       \
     if (required && std::string(required) == "1") FAIL() << missing; \
-    GTEST_SKIP() << "no GPU for this test: " << missing;             \
+    GTEST_SKIP() << missing;                                         \
   } while (false)
 
 class OnGpu : public ::testing::Test {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "base/philox.hpp"
 #include "life/birth.hpp"
@@ -132,8 +133,9 @@ TEST(BodyDistance, OfMassIsTheCheapestWayToCarryItAlongEachAxis) {
   EXPECT_NEAR(mass_distance(cloud(a), cloud(b)), expected, 1e-14);
 }
 
-/// The body that one genome develops in the small experiment with an additional operator and the given values.
-GrownBody grown(const std::string& devo, std::vector<std::string> values) {
+/// The body that one genome develops in the small experiment with an additional operator and the given values, perhaps
+/// from a perturbed start.
+GrownBody grown(const std::string& devo, std::vector<std::string> values, std::optional<std::uint32_t> start = {}) {
   values.insert(values.end(), {"encoding.size=[3, 2, 2]", "development.cycle_time=0.2"});
   const std::string text =
       testing::small_with({{"springs = 2\n", "springs = 2\n[[development.operator]]\n" + devo + "\n"}});
@@ -142,10 +144,22 @@ GrownBody grown(const std::string& devo, std::vector<std::string> values) {
   const std::vector<Individual> individuals = breed(experiment, {}, 0, 4, 1);
   const Evaluation evaluation(experiment, simulator);
   std::vector<Life> lives = evaluation.birth.of(testing::newborns_of(individuals));
+  if (start) perturb(lives.front(), experiment, *start);
   GrowthObserver observer(lives.front().living.body);
   GrownBody body;
   evaluation.development.run(lives, [&](double) { body = observer.after_cycle(lives.front()); });
   return body;
+}
+
+TEST(BodyDistance, OfTwoLivesOfOneGenomeIsZeroWithoutNoiseAlone) {
+  const std::string turnover = "name = \"mass-turnover\"\nthreshold = 100\nlimit = 2";
+  const std::vector<std::string> values{"development.cycles=30"};
+  const GrownBody a = grown(turnover, values), b = grown(turnover, values), c = grown(turnover, values, 1);
+  EXPECT_GE(*std::max_element(a.numbers.begin(), a.numbers.end()), a.born) << "no mass has come";
+  EXPECT_EQ(spring_distance(a, b), 0);
+  EXPECT_EQ(mass_distance(a, b), 0);
+  EXPECT_GT(spring_distance(a, c), 0);
+  EXPECT_GT(mass_distance(a, c), 0);
 }
 
 TEST(BodyDistance, SeesThatTwoScenesLetMassesComeElsewhere) {

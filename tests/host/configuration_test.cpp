@@ -447,7 +447,7 @@ TEST(ConfigErrors, WhatDoesNotGoTogetherIsReportedBesideOtherErrors) {
                                     {"[scene.floor]\n", ""},
                                     {"threads = 2", "threads = -1\n[materials.muscel]\ndensity = 1"},
                                     {"name = \"actuation-work\"", "name = \"distance\""}})),
-              ElementsAre(at_place("test.toml:6:22: experiment.random_individuals = 7: ", "6"),
+              ElementsAre(at_place("test.toml:6:22: experiment.random_individuals = 7: ", "population, 6"),
                           at_place("test.toml:16:12: mutation.0.sections = [ \"tissue\" ]: ", "voxel"),
                           at_place("test.toml:23:1: scene.friction = a table: ", "add [scene.floor]",
                                    "remove [scene.friction]"),

@@ -13,6 +13,7 @@
 #include "life/measurement/top_speed.hpp"
 #include "support/channels.hpp"
 #include "support/experiments.hpp"
+#include "support/lives.hpp"
 #include "support/messages.hpp"
 #include "support/refusals.hpp"
 #include "support/scorer.hpp"
@@ -300,6 +301,26 @@ TEST(TopSpeed, IsOnlyForScenesWhereNothingButFrictionPushes) {
   EXPECT_FALSE(still([](Scene& s) { s.friction->coefficient = 0; }));
   EXPECT_FALSE(still([](Scene& s) { s.drag = Drag{0.1}; }));
   EXPECT_TRUE(still([](Scene& s) { s.drag = Drag{0}; }));
+}
+
+TEST(TopSpeed, IsAboveThatOfVigorousRobots) {
+  Experiment experiment =
+      testing::small({"materials.muscle.amplitude=0.6", "materials.muscle2.amplitude=0.6",
+                      "materials.muscle.frequency=4", "materials.muscle2.frequency=4", "simulation.dt=0.0001"});
+  score_by(experiment,
+           {{{.settle = 1, .window = 2}, {{"x", "m/s", true}, {"y", "m/s", true}}, [](const Observation& seen) {
+               const Vec3 way = seen.centre_after - seen.centre_before;
+               return std::vector{way.x / seen.window, way.y / seen.window};
+             }}});
+  const double limit = top_speed(experiment.scene, 0);
+  const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 2);
+  double fastest = 0;
+  const std::vector<Individual> robots = breed(experiment, {}, 0, 0, 24);
+  for (const Result& result : Evaluation(experiment, *simulator).evaluate(testing::newborns_of(robots), [](double) {}))
+    if (result.status == Status::ok)
+      fastest = std::max(fastest, std::hypot(result.objectives[0], result.objectives[1]));
+  EXPECT_LT(fastest, 1.01 * limit);
+  EXPECT_GT(fastest, 0.1 * limit) << "robots so slow show nothing";
 }
 
 /// Where every robot slides, what holds it back is all that it has: it slides as fast as the limit is below 0.

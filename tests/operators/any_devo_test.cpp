@@ -1,4 +1,5 @@
 // Properties of every devo operator, alone and in any order with others.
+#include <algorithm>
 #include <cmath>
 
 #include "life.hpp"
@@ -78,6 +79,29 @@ TEST(AnyDevo, WorksWithOthersInAnyOrder) {
       EXPECT_GT(body.materials.at(spring.material).stiffness, 0);
     }
   }
+}
+
+TEST(AnyDevo, OperatorsThatChangeDifferentThingsDoNotDependOnTheirOrder) {
+  std::vector<std::size_t> order;  // among the uses
+  for (std::size_t i = 0; i < uses.size(); ++i)
+    for (const char* name : {"length-adaptation", "stiffness-adaptation", "amplitude-adaptation", "ballistic-growth"})
+      if (uses[i].first == std::string(name)) order.push_back(i);
+  ASSERT_EQ(order.size(), 4u);
+  std::vector<double> first;
+  do {
+    Life life = busy_life();
+    for (const std::size_t use : order)
+      life.living = after(life, develop(*make<Devo>(uses[use].first, uses[use].second), life, use));
+    std::vector<double> springs;
+    for (const Spring& spring : life.living.body.springs) {
+      const Material& material = life.living.body.materials[spring.material];
+      springs.insert(springs.end(), {spring.rest_length, life.living.body.stiffness(spring), material.amplitude});
+    }
+    if (first.empty()) first = springs;
+    ASSERT_EQ(springs.size(), first.size());
+    for (std::size_t i = 0; i < first.size(); ++i) EXPECT_NEAR(springs[i], first[i], 1e-9 * first[i]);
+  } while (std::next_permutation(order.begin(), order.end()));
+  EXPECT_FALSE(first.empty());
 }
 
 }  // namespace

@@ -142,6 +142,16 @@ class Commands(PageTest):
         self.assertGreater(len(found), 30)
         self.assert_none([fault for command in found if (fault := fault_of(command))])
 
+    def test_that_are_wrong_are_found(self):
+        for line in ("tools/evodevo rnu FILE.toml", "evodevo show DIR --jsno", "tools/nothing", "evodveo show DIR",
+                     "evodevo check experiments/{evo,ove}.toml"):
+            (words, output), = commands_in(line)
+            self.assertIsNotNone(fault_of(Command(ROOT / "README.md", 1, words, output)), line)
+
+    def test_lines_are_taken_apart(self):
+        self.assertEqual(commands_in("A=1 one --x 'a b' > out.json && two | three  # four"),
+                         [(["one", "--x", "a b"], "out.json"), (["two"], None), (["three"], None)])
+
     def test_that_are_cheap_do_what_they_say(self):
         count, faults = 0, []
         with tempfile.TemporaryDirectory() as scratch:

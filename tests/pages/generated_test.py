@@ -3,7 +3,7 @@ complete."""
 
 import unittest
 
-from generated import PART, headers, helpers_in, renewed, undocumented
+from generated import PART, headers, helpers_in, renewed, undocumented, users_of
 from pages import ROOT, all_pages, name
 
 
@@ -29,6 +29,15 @@ class Helpers(unittest.TestCase):
         for header in headers():
             self.assertTrue(helpers_in(header), header)
             self.assertEqual(undocumented(header.read_text(encoding="utf-8")), [], header)
+        text = "}\nstruct A {\n};\n/// B\ntemplate <class T>\nstruct B {\n};\ntemplate <class T>\nstruct C {\n"
+        self.assertEqual(undocumented(text), ["struct A {", "template <class T>"])
+
+    def test_users_are_found(self):
+        found = {helper.name: users_of(helper) for header in headers() for helper in helpers_in(header)}
+        self.assertEqual(found["LayeredNetworkEncoding"], "`cppn`, `neural`")
+        self.assertEqual(found["springs_of_least"], "this header")
+        self.assertIn("`add-link`", found["neat::LinkGene"])
+        self.assertNotIn("`voxel`", found["add_block"])  # which calls the function of the same name of Layout
 
 
 unittest.main()

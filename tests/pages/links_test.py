@@ -74,6 +74,15 @@ class Links(PageTest):
         self.assertGreater(len(all_pages()), 12)
         self.assert_none([fault for page in all_pages() for fault in faults(page)])
 
+    def test_that_lead_nowhere_are_found(self):
+        with tempfile.TemporaryDirectory() as folder:
+            page = Path(folder, "page.md")
+            page.write_text("# A `heading`, twice\n# A heading, twice\n[good](#a-heading-twice-1) [good](page.md)\n"
+                            "```sh\n# no heading\n[no link](in-a-block.md)\n```\n"
+                            "[bad](nowhere.md)\n![bad](page.png)\n[bad](page.md#no-heading)\n`nowhere/page.cpp`\n")
+            found = list(faults(page))
+            self.assertEqual([fault.split(":")[1] for fault in found], ["8", "9", "10", "11"], found)
+
 
 class Installed(PageTest):
     @classmethod

@@ -163,7 +163,8 @@ test("a snap, which could not read the pages, is no browser", () => {
 
 test("a gallery can be a picture; a robot that never lived cannot be filmed, and is left out of that picture", () => {
   const { run, file, soft } = barrenRun();
-  for (const options of [["--at", "1", "--out", scratch.path("none.png")], ["--out", scratch.path("none.mp4")]]) {
+  const png = ["--out", scratch.path("none.png")], mp4 = ["--out", scratch.path("none.mp4")];
+  for (const options of [["--at", "1", ...png], png, mp4]) {
     const { status, stderr } = filmed(["--individual", "0", ...options], run);
     assert.notEqual(status, 0);
     assert.match(stderr, /^evodevo: .*none\.(png|mp4): there is nothing to draw: the robot never lived/m);
