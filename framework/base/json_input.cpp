@@ -132,17 +132,20 @@ const Json& JsonInput::member(const Json& item, const std::string& at, const std
   return item.at(key);
 }
 
-double JsonInput::finite(const Json& value, const std::string& at, double least) const {
+double JsonInput::finite(const Json& value, const std::string& at, double least, double most) const {
   if (!value.is_number()) fail(at, "expected a number, found " + shown(value));
   const double number = value.get<double>();
-  if (!std::isfinite(number) || number < least)
+  if (!std::isfinite(number) || number < least || number > most)
     fail(at, shown(value) + " is out of range; expected " +
-                 (least == std::numeric_limits<double>::lowest() ? "a finite number" : "at least " + to_text(least)));
+                 (least == std::numeric_limits<double>::lowest() ? "a finite number"
+                  : most < any                                   ? to_text(least) + " to " + to_text(most)
+                                                                 : "at least " + to_text(least)));
   return number;
 }
 
-double JsonInput::number(const Json& item, const std::string& at, const std::string& key, double least) const {
-  return finite(member(item, at, key), member_of(at, key), least);
+double JsonInput::number(const Json& item, const std::string& at, const std::string& key, double least,
+                         double most) const {
+  return finite(member(item, at, key), member_of(at, key), least, most);
 }
 
 std::uint32_t JsonInput::index(const Json& item, const std::string& at, const std::string& key,

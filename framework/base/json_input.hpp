@@ -1,6 +1,7 @@
 // Reads JSON files that people write. Error messages give the place, the value and a remedy.
 #pragma once
 
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -13,6 +14,8 @@ class JsonInput {
  public:
   using Json = nlohmann::ordered_json;
 
+  static constexpr double any = std::numeric_limits<double>::max();  ///< no upper bound
+
   explicit JsonInput(std::string file) : file_(std::move(file)) {}
 
   /// Parses the whole file. Throws ConfigError if the file is not JSON, has the same key twice in one object, has more
@@ -23,10 +26,10 @@ class JsonInput {
   void expect(const Json& item, const std::string& at, const std::vector<std::string>& keys) const;
   /// Returns the value of a key of `item`. Throws ConfigError if `item` has no such key.
   const Json& member(const Json& item, const std::string& at, const std::string& key) const;
-  /// Returns `value` as a number. Throws ConfigError if it is not a finite number or is less than `least`.
-  double finite(const Json& value, const std::string& at, double least) const;
+  /// Returns `value` as a number. Throws ConfigError if it is not a finite number from `least` to `most`.
+  double finite(const Json& value, const std::string& at, double least, double most = any) const;
   /// Returns the value of a key as a number. Throws like member() and finite().
-  double number(const Json& item, const std::string& at, const std::string& key, double least) const;
+  double number(const Json& item, const std::string& at, const std::string& key, double least, double most = any) const;
   /// Returns the value of a key as an index. Throws ConfigError if it is not a whole number from 0 to count-1.
   std::uint32_t index(const Json& item, const std::string& at, const std::string& key, std::size_t count) const;
 

@@ -2,11 +2,17 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <iostream>
 #include <stdexcept>
 #include <utility>
+
+#include "base/text.hpp"
 
 namespace evodevo {
 namespace {
@@ -21,6 +27,47 @@ bool stays_in_place(const fs::path& file) {
   if (fs::exists(status) ? !fs::is_regular_file(status) : fs::is_symlink(fs::symlink_status(file, error))) return true;
   const std::string path = fs::absolute(file).lexically_normal().string();
   return path.starts_with("/dev/") || path.starts_with("/proc/");
+}
+
+/// A temporary file that signal handlers see.
+struct Unfinished {
+  std::atomic<int> state{0};  ///< 0: free, 1: being noted or forgotten, 2: there
+  pid_t owner = 0;            ///< a child process that ends leaves it alone
+  std::array<char, 4096> beside, target;
+};
+std::array<Unfinished, 16> unfinished;
+static_assert(std::atomic<int>::is_always_lock_free, "signal handlers use it");
+
+void end_by(int signal) {
+  leave_no_unfinished_files();
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
+void note_unfinished(const std::string& beside, const std::string& target) {
+  for (Unfinished& one : unfinished) {
+    if (std::max(beside.size(), target.size()) + 1 > one.beside.size()) return;
+    int free = 0;
+    if (!one.state.compare_exchange_strong(free, 1)) continue;
+    one.owner = getpid();
+    std::memcpy(one.beside.data(), beside.c_str(), beside.size() + 1);
+    std::memcpy(one.target.data(), target.c_str(), target.size() + 1);
+    one.state = 2;
+    break;
+  }
+  for (const int signal : {SIGINT, SIGTERM}) {
+    struct sigaction now {};
+    if (sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_DFL) std::signal(signal, end_by);
+  }
+}
+
+void forget_unfinished(const std::string& beside) {
+  for (Unfinished& one : unfinished) {
+    int there = 2;
+    if (beside != one.beside.data() || !one.state.compare_exchange_strong(there, 1)) continue;
+    one.beside[0] = '\0';
+    one.state = 0;
+  }
 }
 
 [[noreturn]] void cannot_be_written(const std::string& title, int error) {
@@ -38,7 +85,12 @@ OutputFile::OutputFile(const fs::path& file, std::string title) : title_(std::mo
 OutputFile::~OutputFile() {
   if (stream_ == nullptr) return;
   std::fclose(stream_);
-  if (!beside_.empty()) unlink(beside_.c_str());
+  if (!beside_.empty()) remove_beside();
+}
+
+void OutputFile::remove_beside() const {
+  unlink(beside_.c_str());
+  forget_unfinished(beside_.string());
 }
 
 void OutputFile::open_beside(const fs::path& file) {
@@ -48,9 +100,9 @@ void OutputFile::open_beside(const fs::path& file) {
   if (is_there) target_ = fs::canonical(file);
   beside_ = target_.string() + ".unfinished-" + std::to_string(getpid());
   stream_ = std::fopen(beside_.c_str(), "we");
-  if (stream_ == nullptr)
-    beside_.clear();
-  else if (is_there)
+  if (stream_ == nullptr) return beside_.clear();
+  note_unfinished(beside_.string(), printable(target_.string(), 4000));
+  if (is_there)
     fs::permissions(beside_, fs::status(target_).permissions(), error);  // permissions of the old file, if allowed
 }
 
@@ -65,13 +117,25 @@ void OutputFile::finish() {
     if (closed != 0) fail(closed);
     return;
   }
-  if (closed == 0 && std::rename(beside_.c_str(), target_.c_str()) == 0) return;
+  const bool is_renamed = closed == 0 && std::rename(beside_.c_str(), target_.c_str()) == 0;
   const int cause = closed != 0 ? closed : errno;
-  unlink(beside_.c_str());
-  fail(cause);
+  remove_beside();  // which is gone if it was renamed
+  if (!is_renamed) fail(cause);
 }
 
 void OutputFile::fail(int error) const { cannot_be_written(title_, error); }
+
+void leave_no_unfinished_files() {
+  const auto say = [](const char* text) {
+    [[maybe_unused]] const auto written = write(STDERR_FILENO, text, std::strlen(text));
+  };
+  for (Unfinished& one : unfinished) {
+    if (one.state != 2 || one.owner != getpid() || unlink(one.beside.data()) != 0) continue;
+    say("\nevodevo: ");
+    say(one.target.data());
+    say(" is not written\n");
+  }
+}
 
 void write_file(const fs::path& file, std::string_view text) {
   OutputFile output(file, file.string());

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <numeric>
 #include <optional>
+#include <sstream>
 
 namespace evodevo {
 namespace {
@@ -23,6 +24,29 @@ std::string word_for(double value) {
 std::string program_name() {
   const char* name = std::getenv("EVODEVO_COMMAND");
   return name != nullptr ? name : "evodevo";
+}
+
+std::string shell_word(std::string_view word) {
+  const auto is_plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+           std::string_view("-._/=+:,@%").find(c) != std::string_view::npos;
+  };
+  if (!word.empty() && std::ranges::all_of(word, is_plain)) return std::string(word);
+  std::string inner(word);
+  if (printable(word, std::string::npos) == word) {
+    replace_all(inner, "'", "'\\''");
+    return "'" + inner + "'";
+  }
+  inner.clear();  // such characters must not reach a terminal: escapes of bash and zsh
+  for (const char c : word)
+    inner += is_plain(c) ? std::string(1, c) : fmt::format("\\{:03o}", static_cast<unsigned char>(c));
+  return "$'" + inner + "'";
+}
+
+std::string shell_command(std::initializer_list<std::string_view> words) {
+  std::string command = program_name();
+  for (const std::string_view word : words) command += ' ' + shell_word(word);
+  return command;
 }
 
 namespace {
@@ -147,6 +171,25 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 }  // namespace
+
+std::string wrapped(const std::string& text, std::size_t indent) {
+  constexpr std::size_t width = 80;
+  std::istringstream words(text);
+  std::string lines;
+  std::size_t column = indent;
+  for (std::string word; words >> word;) {
+    if (column > indent && column + 1 + word.size() > width) {
+      lines += '\n' + std::string(indent, ' ');
+      column = indent;
+    } else if (column > indent) {
+      lines += ' ';
+      ++column;
+    }
+    lines += word;
+    column += word.size();
+  }
+  return lines;
+}
 
 void replace_all(std::string& text, std::string_view mark, std::string_view value) {
   for (std::size_t at = 0; (at = text.find(mark, at)) != std::string::npos; at += value.size())

@@ -1,6 +1,7 @@
 // Functions that format texts for messages.
 #pragma once
 
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,6 +14,12 @@ namespace evodevo {
 /// The command that starts this program, for remedies that users can paste into a shell: the environment variable
 /// EVODEVO_COMMAND, which the launching script sets, or else "evodevo".
 std::string program_name();
+
+/// Returns a word as a shell takes it: in quotes, if it has characters that mean something to a shell.
+std::string shell_word(std::string_view word);
+
+/// Returns a call of this program, such as "evodevo show 'runs/my robot-1'", that users can paste into a shell.
+std::string shell_command(std::initializer_list<std::string_view> words);
 
 /// Returns `text` in a form that cannot break lines of a message, table or log, or disturb a terminal. Control
 /// characters, characters that change the text direction, and bytes that are not UTF-8 become escapes such as \n and
@@ -41,6 +48,9 @@ std::string to_text(const Range& range);
 
 /// Joins texts, for example to "a, b, c".
 std::string joined(std::span<const std::string> items, std::string_view separator = ", ");
+
+/// Wraps a text to lines of at most 80 characters. Indents all lines except the first by `indent` spaces.
+std::string wrapped(const std::string& text, std::size_t indent = 0);
 
 /// Replaces every `mark` in `text` with `value`.
 void replace_all(std::string& text, std::string_view mark, std::string_view value);

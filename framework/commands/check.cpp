@@ -6,10 +6,9 @@
 #include "base/text.hpp"
 #include "commands/commands.hpp"
 #include "commands/shell/options.hpp"
-#include "evolution/breeding.hpp"
+#include "evolution/first_robots.hpp"
 #include "evolution/founders.hpp"
 #include "experiment/islands/neighbours.hpp"
-#include "life/birth.hpp"
 #include "life/measurement/top_speed.hpp"
 #include "life/measurement/windows.hpp"
 
@@ -35,20 +34,6 @@ void print_sample_memory(const Experiment& experiment) {
   std::cout << "samples: " << megabytes(after) << " after maturing and " << megabytes(within)
             << " within the life, for a robot of " << masses << " masses and " << springs << " springs; at most "
             << megabytes(std::max(after, most_sample_bytes)) << " after maturing at once\n";
-}
-
-/// Returns the lengths at birth of those of the first random robots that have a length, m, in ascending order.
-std::vector<double> lengths_at_birth(const Experiment& experiment) {
-  constexpr std::int64_t most = 10;
-  std::vector<double> lengths;
-  const auto count = static_cast<std::size_t>(std::min(most, experiment.newborns()));
-  for (const Individual& robot : breed(experiment, {}, 0, 0, count)) {
-    const BuiltBody built = build_body(decoded(experiment, robot.genome, {.individual = robot.id}));
-    const double length = bounding_box(rest_positions(built.body)).longest_side();
-    if (built.failure.empty() && length > 0) lengths.push_back(length);
-  }
-  std::sort(lengths.begin(), lengths.end());
-  return lengths;
 }
 
 /// Returns a text such as "0.2" or "0.2 to 0.3".
@@ -86,15 +71,14 @@ void print_top_speed(const Scene& scene, const std::vector<double>& lengths, dou
   std::cout << '\n';
 }
 
-/// Prints it for each scene in which robots are measured.
-void print_top_speeds(const Experiment& experiment) {
+/// Prints it for each scene in which robots are measured. `lengths` are those of some robots, m, in ascending order.
+void print_top_speeds(const Experiment& experiment, const std::vector<double>& lengths) {
   std::vector<std::pair<std::string, const Scene*>> scenes;
   if (experiment.scenarios.empty()) scenes.emplace_back("", &experiment.scene);
   for (const Scenario& scenario : experiment.scenarios)
     scenes.emplace_back(" in scenario " + scenario.name, &scenario.scene);
   std::erase_if(scenes, [](const auto& named) { return !moves_by_friction(*named.second); });
   if (scenes.empty()) return;
-  const std::vector<double> lengths = lengths_at_birth(experiment);
   const std::optional<Request> request = first_objective_request(experiment);
   const double window = request && !request->cycle ? request->window : 0;
   for (const auto& [where, scene] : scenes) {
@@ -136,10 +120,12 @@ int check(const Given& given) {
   const auto file = given["EXPERIMENT.toml"].as<std::string>();
   const std::vector<Experiment> islands = given_islands(file, given);
   const Experiment& experiment = islands.front();
-  print_warnings(experiment);
+  const FirstRobots robots = first_robots(experiment);
+  print_warnings(experiment.warnings);
+  print_warnings(robots.warnings);
   print_founders(experiment);
   print_sample_memory(experiment);
-  print_top_speeds(experiment);
+  print_top_speeds(experiment, robots.lengths);
   print_islands(islands);
   std::cout << file << ": ok\n";
   return 0;

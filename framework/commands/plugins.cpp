@@ -266,6 +266,7 @@ int conform(const Given& given) {
   const bool as_json = given.contains("json");
   std::map<std::string, std::size_t> counts;
   Json list = Json::array();
+  std::map<std::pair<std::string, std::string>, std::string> told;  // the first case of each reason
   const auto report = [&](const Verdict& verdict) {
     ++counts[verdict.outcome];
     if (as_json)
@@ -274,8 +275,11 @@ int conform(const Given& given) {
                       {"outcome", verdict.outcome},
                       {"reason", verdict.reason},
                       {"seed", how.seed}});
-    else
+    else if (const auto [first, is_new] = told.emplace(std::pair(verdict.subject, verdict.reason), verdict.name);
+             is_new || verdict.reason.empty())
       print(verdict);
+    else
+      print({verdict.subject, verdict.name, verdict.outcome, "as in " + first->second});
   };
   std::vector<fs::path> paths;
   for (const std::string& library : libraries) paths.push_back(fs::absolute(library).lexically_normal());

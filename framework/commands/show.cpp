@@ -90,7 +90,7 @@ class Report {
                  short_quantity(individual.result.objectives[i], objectives_[i].unit));
     fmt::print(std::cout, "born in generation {}, age {}", individual.born, last_age(individual, last_generation_));
     if (const auto verification = archive_.verification(id))
-      std::cout << ", " << marks_text(*verification, objectives_.front().maximise);
+      std::cout << ", " << verdict_text(*verification, objectives_.front().maximise);
     std::cout << '\n';
     print_measures(id);
     const std::vector<ArchivedTest> tests = archive_.tests(id);
@@ -292,7 +292,7 @@ void print_islands(const fs::path& run) {
                best.empty() ? "-" : short_number(archive.known_individual(best.front()).result.objectives.front()),
                best.empty() ? "-" : std::to_string(best.front()), immigrants, living);
   }
-  remarks() << "to see more of an island: " << program_name() << " show " << island_folder(run, 1).string() << '\n';
+  remarks() << "to see more of an island: " << shell_command({"show", island_folder(run, 1).string()}) << '\n';
 }
 
 /// Shows a run with islands.
@@ -341,8 +341,9 @@ Command show_command() {
       .arguments = {{"DIR"}},
       .summary = "Show the progress and the best robots of a run",
       .text =
-          {"It prints the best and the median of each objective by generation, the coverage and the QD score of the "
-           "map of niches if the experiment has descriptors, why individuals have no fitness, and the best individuals "
+          {"It prints the best and the median of each objective by generation, the coverage and the QD score (the "
+           "sum of the elites' first objectives, of which negative ones count as 0) of the map of niches if the "
+           "experiment has descriptors, why individuals have no fitness, and the best individuals "
            "with their scores, their ancestors, and the blocks of genes that came and went from one to the next. The "
            "run may still be in progress. With --individual, it prints one individual: its scores, what the selection "
            "operator has noted about it, and its ancestors. Of a run with islands, it prints a line for each; to see "

@@ -88,7 +88,7 @@ void enter_scenario(std::size_t scenario, const Experiment& experiment, const Ev
 
 /// Returns the life of the body in a file. Throws ConfigError if the body cannot be simulated in the scene or with the
 /// time step.
-Life life_of(const std::string& file, const Evaluation& evaluation) {
+Life life_of(const std::string& file, const Experiment& experiment, const Evaluation& evaluation) {
   GivenBody given = read_body(file);
   Life life = given.state ? evaluation.birth.amid_life(std::move(given.body), std::move(*given.state))
                           : evaluation.birth.of(std::move(given.body));
@@ -96,14 +96,17 @@ Life life_of(const std::string& file, const Evaluation& evaluation) {
   const bool is_step = life.result.reason.starts_with("unstable dt");
   throw ConfigError(
       file + ": " + name(life.result.status) + ": " + life.result.reason +
-      (is_step ? "; set a smaller simulation.dt, or \"auto\""
-               : "; leave out \"time\", \"start_energy\" and the velocities, so that the body is born on the ground"));
+      (is_step && !experiment.step.dt ? "; make its springs softer, or its masses heavier"
+       : is_step
+           ? "; set a smaller simulation.dt, or \"auto\""
+           : "; leave out \"time\", \"start_energy\" and the velocities, so that the body is born on the ground"));
 }
 
 void print_end(const Life& life, double duration, Vec3 start, double length) {
   const State& state = life.living.state;
   const Vec3 moved = centre_of_mass(life.living.body, state.position) - start;
-  std::cout << "after " << short_number(duration) << " s the centre of mass has moved by " << vector_text(moved) << " m";
+  std::cout << "after " << short_number(duration) << " s the centre of mass has moved by " << vector_text(moved)
+            << " m";
   if (length > 0)
     std::cout << ", " << short_number(norm({moved.x, moved.y, 0}) / length) << " body lengths along the ground";
   std::cout << '\n';
@@ -120,9 +123,9 @@ int simulate(const Given& given) {
     throw UsageError("--duration " + to_text(duration) + ": expected more than 0 and at most 1e6 s");
   const auto simulator = opened_simulator(experiment);
   const Evaluation evaluation(experiment, *simulator);
-  Life life = life_of(body_file, evaluation);
+  Life life = life_of(body_file, experiment, evaluation);
   if (const auto scenario = given_scenario(experiment, given)) enter_scenario(*scenario, experiment, evaluation, life);
-  const Pace pace = pace_over(duration, experiment.step, life.living.longest_dt);
+  const Pace pace = pace_of(duration, experiment.step, life.living.longest_dt);
   if (pace.steps == 0)
     throw UsageError("--duration " + to_text(duration) + ": is less than half a time step; expected at least " +
                      to_text(pace.dt) + " s");

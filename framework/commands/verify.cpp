@@ -23,7 +23,7 @@ int verify(const Given& given) {
   Archive archive = Archive::annotate(given["DIR"].as<std::string>());
   if (archive.best(1).empty())
     throw ArchiveError(archive.folder().string() + ": no individual has a fitness that could be verified; see `" +
-                       program_name() + " show " + archive.folder().string() + "`");
+                       shell_command({"show", archive.folder().string()}) + "`");
   const Experiment experiment = experiment_of_run(archive, given);
   if (!is_verifiable(experiment))
     throw ArchiveError(archive.folder().string() + ": its first objective, " + experiment.objectives.front().name +

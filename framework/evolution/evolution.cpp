@@ -66,11 +66,14 @@ Survival chosen_survivors(const Experiment& experiment, const SelectionTable& ta
   Survival survival = experiment.selection->survive(table.context(), population, rng);
   std::vector<std::uint32_t>& rows = survival.rows;
   std::sort(rows.begin(), rows.end());
-  const bool twice = std::adjacent_find(rows.begin(), rows.end()) != rows.end();
-  if (rows.empty() || rows.size() > population || twice || rows.back() >= table.rows().size())
-    throw std::runtime_error("chose " + std::to_string(rows.size()) + " survivors, expected 1 to " +
-                             std::to_string(population) + " different rows of " + std::to_string(table.rows().size()) +
-                             ", numbered from 0");
+  const std::string expected = "; expected 1 to " + std::to_string(population) + " different rows of " +
+                               std::to_string(table.rows().size()) + ", numbered from 0";
+  if (rows.empty() || rows.size() > population)
+    throw std::runtime_error("chose " + std::to_string(rows.size()) + " survivors" + expected);
+  if (rows.back() >= table.rows().size())
+    throw std::runtime_error("chose row " + std::to_string(rows.back()) + " to survive" + expected);
+  if (const auto twin = std::adjacent_find(rows.begin(), rows.end()); twin != rows.end())
+    throw std::runtime_error("chose row " + std::to_string(*twin) + " twice to survive" + expected);
   check_remembered(survival, experiment, table.rows().size());
   return survival;
 }
@@ -272,7 +275,7 @@ TimeSpent evolve(const Experiment& experiment, Evaluator& evaluator, Archive& ar
                                           : std::vector<Migrant>();
     if (!migrants) break;
     const auto start = Clock::now();
-    const std::int64_t count = std::min(experiment.newborns(), experiment.evaluations - evaluations);
+    const std::int64_t count = std::min(experiment.births(generation), experiment.evaluations - evaluations);
     // each evaluation uses one id, so the next id is the number of evaluations so far
     std::vector<Individual> newborns = breed(
         experiment, population, generation, static_cast<std::uint32_t>(evaluations), static_cast<std::size_t>(count),

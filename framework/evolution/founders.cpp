@@ -49,7 +49,7 @@ std::vector<Migrant> founders(const Experiment& experiment) {
            "the same operators with genes of their own");
   std::vector<Individual> population = archive.population();
   if (population.empty()) refuse(experiment, "no generation of that run is complete; continue it with `resume`");
-  const auto most = static_cast<std::size_t>(std::min(experiment.newborns(), experiment.evaluations));
+  const auto most = static_cast<std::size_t>(std::min(experiment.births(0), experiment.evaluations));
   std::vector<Migrant> migrants;
   for (const std::size_t place : chosen(population, most, archive.objectives().front().maximise)) {
     Individual& one = population[place];

@@ -35,6 +35,30 @@ Registry registry_of(const PluginsTable& plugins, Warnings& warnings) {
   return registry;
 }
 
+/// Adds warnings of what keeps robots from walking, and genomes from being inherited.
+void warn_of_vain_settings(Experiment& experiment) {
+  const auto check_scene = [&](const Scene& scene, const std::string& table) {
+    if (scene.gravity && scene.gravity->acceleration > 0 && !scene.floor)
+      experiment.warnings.push_back("[" + table +
+                                    ".gravity]: there is no floor, so that robots fall without end; add [" + table +
+                                    ".floor] or remove the gravity");
+  };
+  check_scene(experiment.scene, "scene");
+  for (const Scenario& scenario : experiment.scenarios) {
+    if (scenario.scene != experiment.scene) check_scene(scenario.scene, "scenario " + scenario.name);
+    if (scenario.repeat > 1 && !(scenario.start_noise > 0) && !(scenario.damage > 0))
+      experiment.warnings.push_back(
+          "scenario " + scenario.name + ", repeat = " + std::to_string(scenario.repeat) +
+          ": all repeats measure the same, since they differ by start_noise and damage alone; "
+          "set one of these, or remove repeat");
+  }
+  if (const std::int64_t births = experiment.newborns(); experiment.random_individuals == births)
+    experiment.warnings.push_back(
+        "experiment.random_individuals = " + std::to_string(births) +
+        ": all that are born in each generation are random, so that nobody has children; set " +
+        (births > 1 ? "less than " + std::to_string(births) : "0") + " unless random search is what you want");
+}
+
 Experiment compose(const toml::table& root, const ExperimentSource& source) {
   ErrorCollector errors;
   TomlReader top(root, "", {}, &errors);
@@ -64,6 +88,7 @@ Experiment compose(const toml::table& root, const ExperimentSource& source) {
   if (!folders.empty()) record.insert("plugins", toml::table{{"paths", std::move(folders)}});
   read_operators(top, OperatorFactory(registry, registry_faults, experiment), source, experiment, record);
   errors.throw_errors();
+  warn_of_vain_settings(experiment);
   std::ostringstream text;
   text << record << '\n';
   experiment.resolved = text.str();

@@ -70,6 +70,11 @@ struct Experiment : Settings {
   const Selection& breeder() const { return parent_selection ? *parent_selection : *selection; }
   std::size_t breeder_index() const { return parent_selection ? 1 : 0; }
   bool makes_children() const { return !child_maker.empty(); }
+  /// The number of individuals that are born in a generation. Those of the first one are at least as many as the
+  /// population, unless the selection operator makes them.
+  std::int64_t births(std::uint32_t generation) const {
+    return generation > 0 || makes_children() ? newborns() : std::max(newborns(), population);
+  }
 
   FileContents files;  ///< of the files that parameters of operators name
 

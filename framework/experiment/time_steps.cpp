@@ -47,15 +47,9 @@ std::uint64_t Pace::steps_to(double time) const {
   return undivided * static_cast<std::uint64_t>(refine);
 }
 
-Pace pace_over(double duration, const StepRule& rule, double longest) {
-  const double steps = rule.dt ? std::round(duration / *rule.dt) : std::ceil(duration / longest);
-  const auto count = static_cast<std::uint64_t>(steps) * static_cast<std::uint64_t>(rule.refine);
-  return {rule.dt ? *rule.fixed() : duration / static_cast<double>(count), count, rule.refine};
-}
-
-Pace pace_of_seconds(double duration, const StepRule& rule, double longest) {
-  if (rule.dt) return pace_over(duration, rule, longest);
-  Pace pace = pace_over(1, rule, longest);
+Pace pace_of(double duration, const StepRule& rule, double longest) {
+  const auto refine = static_cast<double>(rule.refine);
+  Pace pace{rule.dt ? *rule.fixed() : rule.unit / (std::ceil(rule.unit / longest) * refine), 0, rule.refine};
   pace.steps = pace.steps_to(duration);
   return pace;
 }

@@ -15,6 +15,8 @@ struct StepRule {
   std::optional<double> dt = 0.0005;  ///< time step, s; none: safe_dt() of each body
   std::int64_t refine = 1;            ///< number by which every time step is divided
   bool run_unstable = false;          ///< whether to simulate bodies for which `dt` is too long
+  double unit =
+      1;  ///< s; a whole number of the steps that a body has of its own: a cycle of development, if there is one
 
   /// The time step of all bodies after the division by `refine`, s; none if each body has its own.
   std::optional<double> fixed() const;
@@ -42,16 +44,11 @@ struct LongestStep {
 LongestStep longest_step(const StepRule& rule, const Body& body, std::span<const Vec3> positions, const Scene& scene,
                          Method method);
 
-/// Returns the time steps for a duration (s). With a fixed dt, their number is the nearest whole number; otherwise it
-/// is the smallest number for which equal steps are no longer than `longest` (s). In both cases, each of these steps is
-/// divided by `rule.refine`.
-Pace pace_over(double duration, const StepRule& rule, double longest);
-
-/// Returns the time steps for a duration (s) in which a body does not change, so that they do not depend on the
-/// duration. With a fixed dt, they are those of pace_over(). Otherwise a second is the smallest whole number of equal
-/// steps no longer than `longest` (s), each divided by `rule.refine`; the duration is rounded to a step before that
-/// division.
-Pace pace_of_seconds(double duration, const StepRule& rule, double longest);
+/// Returns the time steps of a body for a duration (s). Their length does not depend on the duration, so that a life
+/// moves alike however it is divided: with a fixed dt, it is that; otherwise `rule.unit` is the smallest whole number
+/// of equal steps no longer than `longest` (s). The duration is rounded to such a step. Each of them is then divided by
+/// `rule.refine`.
+Pace pace_of(double duration, const StepRule& rule, double longest);
 
 /// Whether a duration (s) is a whole number of steps of `dt` (s), apart from rounding.
 bool is_whole_number_of_steps(double duration, double dt);

@@ -61,7 +61,7 @@ std::string value_text(const toml::node& node) {
   if (const auto* number = node.as_floating_point(); number != nullptr && std::isfinite(number->get()))
     return to_text(number->get());
   std::ostringstream text;
-  node.visit([&](const auto& n) { text << toml::toml_formatter(n, toml::format_flags::none); });
+  node.visit([&](const auto& n) { text << toml::toml_formatter(n, toml::format_flags::allow_unicode_strings); });
   std::string one_line = text.str();
   std::replace(one_line.begin(), one_line.end(), '\n', ' ');  // line breaks between items of a long list
   return one_line;

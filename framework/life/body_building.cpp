@@ -115,16 +115,21 @@ std::uint32_t largest_piece(const std::vector<std::uint32_t>& leader) {
   return static_cast<std::uint32_t>(std::max_element(size.begin(), size.end()) - size.begin());
 }
 
-/// Removes all pieces except the largest. Returns the indices of the masses that stay.
-std::vector<std::uint32_t> keep_largest_piece(Body& body) {
+/// Removes all pieces except the largest. Sets the masses of `built` that stay, and counts those in other pieces.
+void keep_largest_piece(Body& body, BuiltBody& built) {
   const std::vector<std::uint32_t> leader = pieces(body);
   const std::uint32_t largest = largest_piece(leader);
-  std::vector<std::uint32_t> new_index(body.masses.size(), 0), kept;
+  std::vector<bool> is_joined(body.masses.size(), false);
+  for (const Spring& spring : body.springs) is_joined[spring.a] = is_joined[spring.b] = true;
+  std::vector<std::uint32_t> new_index(body.masses.size(), 0);
   std::vector<Mass> masses;
   for (std::uint32_t i = 0; i < leader.size(); ++i) {
-    if (leader[i] != largest) continue;
+    if (leader[i] != largest) {
+      built.in_other_pieces += is_joined[i];
+      continue;
+    }
     new_index[i] = static_cast<std::uint32_t>(masses.size());
-    kept.push_back(i);
+    built.kept.push_back(i);
     masses.push_back(body.masses[i]);
   }
   std::erase_if(body.springs, [&](const Spring& spring) { return leader[spring.a] != largest; });
@@ -133,7 +138,6 @@ std::vector<std::uint32_t> keep_largest_piece(Body& body) {
     spring.b = new_index[spring.b];
   }
   body.masses = std::move(masses);
-  return kept;
 }
 
 void place_on_origin(Body& body) {
@@ -180,13 +184,16 @@ void keep_memory(const std::vector<std::uint32_t>& kept, std::map<std::string, s
 BuiltBody finish(Blueprint blueprint) {
   Body& body = blueprint.body;
   leave_out_air(body);
-  if (body.springs.empty()) return {{}, "no springs", {}, {}};
-  std::vector<std::uint32_t> kept = keep_largest_piece(body);
-  if (!has_extent(rest_positions(body))) return {{}, "no extent", {}, {}};
+  if (body.springs.empty()) return {.failure = "no springs"};
+  BuiltBody built;
+  keep_largest_piece(body, built);
+  if (!has_extent(rest_positions(body))) return {.failure = "no extent"};
   for (Spring& spring : body.springs) spring.first_length = spring.rest_length;
   place_on_origin(body);
-  keep_memory(kept, blueprint.mass_memory);
-  return {std::move(body), "", std::move(kept), std::move(blueprint.mass_memory)};
+  keep_memory(built.kept, blueprint.mass_memory);
+  built.body = std::move(body);
+  built.mass_memory = std::move(blueprint.mass_memory);
+  return built;
 }
 
 /// Returns the first spring that joins a pair of masses which an earlier spring already joins. Groups the springs by
@@ -259,6 +266,8 @@ void check_blueprint(const Blueprint& blueprint, const EncodingContext& context)
     require(mass.mass > 0 && std::isfinite(mass.mass), "mass", i, "has a mass that is not finite or not above 0 kg");
     require(mass.material >= no_material, "mass", i, "has a negative material");
     require_below(materials, mass.material, "mass", i, "has material", "materials");
+    require(blueprint.neighbours == 0 || mass.material != no_material, "mass", i,
+            "has no material, which the springs to its neighbours would have; give it one, or set neighbours = 0");
   }
   for (std::size_t i = 0; i < body.springs.size(); ++i) {
     const Spring& spring = body.springs[i];
@@ -290,7 +299,7 @@ void check_blueprint(const Blueprint& blueprint, const EncodingContext& context)
 }
 
 BuiltBody build_body(Blueprint blueprint) {
-  if (std::string failure = blueprint_failure(blueprint); !failure.empty()) return {{}, std::move(failure), {}, {}};
+  if (std::string failure = blueprint_failure(blueprint); !failure.empty()) return {.failure = std::move(failure)};
   join(blueprint, nearest_pairs(pairing_positions(blueprint), blueprint.neighbours));
   return finish(std::move(blueprint));
 }

@@ -14,10 +14,11 @@ namespace evodevo {
 
 /// A finished body, or the reason why there is none.
 struct BuiltBody {
-  Body body;
-  std::string failure;              ///< empty if there is a body
-  std::vector<std::uint32_t> kept;  ///< indices that the body's masses have in the blueprint, ascending
+  Body body = {};
+  std::string failure = "";              ///< empty if there is a body
+  std::vector<std::uint32_t> kept = {};  ///< indices that the body's masses have in the blueprint, ascending
   std::map<std::string, std::vector<double>> mass_memory = {};  ///< what the body's masses remember at birth, by name
+  std::size_t in_other_pieces = 0;  ///< number of masses that were left out although springs joined them to others
 };
 
 /// Throws a std::invalid_argument that names the fault if a blueprint is malformed: for example, if an index is out of

@@ -1,5 +1,6 @@
 #include "life/body_json.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "base/json_input.hpp"
@@ -37,7 +38,8 @@ class BodyReader {
     input_.each(root, "materials", [&](const Json& item, const std::string& at) {
       input_.expect(item, at, {"name", "stiffness", "amplitude", "frequency", "phase", "damping"});
       if (item.contains("name") && !item.at("name").is_string()) input_.fail(at + ".name", "expected a text");
-      body_.materials.push_back({input_.number(item, at, "stiffness", 0), input_.number(item, at, "amplitude", 0),
+      body_.materials.push_back({input_.number(item, at, "stiffness", 0),
+                                 input_.number(item, at, "amplitude", 0, largest_amplitude),
                                  input_.number(item, at, "frequency", 0), input_.number(item, at, "phase", lowest),
                                  item.contains("damping") ? input_.number(item, at, "damping", 0) : 0.0});
     });
@@ -48,7 +50,7 @@ class BodyReader {
       input_.expect(item, at, {"position", "velocity", "mass", "material"});
       Mass mass;
       mass.rest = vector(item, at, "position");
-      mass.mass = input_.number(item, at, "mass", std::numeric_limits<double>::min());
+      mass.mass = input_.number(item, at, "mass", 0);
       if (item.contains("material"))
         mass.material = static_cast<std::int32_t>(input_.index(item, at, "material", body_.materials.size()));
       body_.masses.push_back(mass);
@@ -56,6 +58,8 @@ class BodyReader {
       state_.velocity.push_back(item.contains("velocity") ? vector(item, at, "velocity") : Vec3{});
     });
     if (body_.masses.empty()) input_.fail("masses", "is empty; a body has at least one mass");
+    if (std::ranges::none_of(body_.masses, [](const Mass& mass) { return mass.mass > 0; }))
+      input_.fail("masses", "all are 0 kg, and a mass of 0 kg is held in place; give one of them a mass");
   }
 
   void read_springs(const Json& root) {

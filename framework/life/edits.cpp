@@ -139,8 +139,9 @@ class Editor {
     if (is_air(material) || !std::isfinite(material.stiffness))
       refuse(what() + " by a spring whose stiffness is " + to_text(material.stiffness) +
              "; expected a finite value above 0");
-    if (!(material.amplitude >= 0 && material.amplitude < 1))
-      refuse(what() + " by a spring whose amplitude is " + to_text(material.amplitude) + "; expected 0 to below 1");
+    if (!(material.amplitude >= 0 && material.amplitude <= largest_amplitude))
+      refuse(what() + " by a spring whose amplitude is " + to_text(material.amplitude) + "; expected 0 to " +
+             to_text(largest_amplitude));
     if (!std::isfinite(material.frequency) || !std::isfinite(material.phase))
       refuse(what() + " by a spring whose frequency or phase is not finite");
     if (!(material.damping >= 0) || !std::isfinite(material.damping))
@@ -149,7 +150,6 @@ class Editor {
   }
 
   static bool is_rest_length(double length) { return length >= 0 && std::isfinite(length); }
-
   static void check_rest_length(const auto& what, double length) {
     if (!is_rest_length(length))
       refuse(what() + " by a spring whose rest length is " + to_text(length) + "; expected a finite value, at least 0");

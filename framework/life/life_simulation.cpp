@@ -73,8 +73,7 @@ void LifeSimulation::choose_step(Life& life) const {
 }
 
 Task LifeSimulation::task_for(Life& life, const Stretch& stretch) const {
-  const Pace pace = stretch.ends_exactly ? pace_over(stretch.duration, conditions_.step, life.living.longest_dt)
-                                         : pace_of_seconds(stretch.duration, conditions_.step, life.living.longest_dt);
+  const Pace pace = pace_of(stretch.duration, conditions_.step, life.living.longest_dt);
   Task task;
   task.body = &life.living.body;
   task.state = &life.living.state;

@@ -21,9 +21,7 @@ struct SampleTime {
 
 /// A part of a life in which the body does not change.
 struct Stretch {
-  double duration = 0;  ///< s
-  /// Whether the stretch ends exactly after its duration, or at the nearest of steps that do not depend on it.
-  bool ends_exactly = true;
+  double duration = 0;                       ///< s
   std::span<const SampleTime> samples = {};  ///< in ascending order of their times
   Channels counted = {};  ///< the channels that count from birth and are read in this stretch or later
   bool contact = false;   ///< whether MassRecords::contact is recorded

@@ -67,7 +67,8 @@ std::vector<Trial> reborn(const Experiment& experiment, Simulator& simulator, st
   const Evaluation evaluation(experiment, simulator, perturbed);
   std::vector<Newborn> newborns;  // without records, and of a generation that no run reaches
   for (const Champion& champion : champions)
-    newborns.push_back({champion.newborn.id, std::numeric_limits<std::uint32_t>::max() - start, champion.newborn.genome});
+    newborns.push_back(
+        {champion.newborn.id, std::numeric_limits<std::uint32_t>::max() - start, champion.newborn.genome});
   Matured matured = evaluation.matured(evaluation.birth.of(newborns), unwatched);
   evaluation.measurement.run(matured, unwatched);
   return trials_of("reborn-" + std::to_string(start + 1), matured.lives);
@@ -107,7 +108,7 @@ class Repetition {
   std::vector<Trial> other_step(Simulator& another_method) const {
     Conditions other = as_in_the_run_;
     other.method = other_method(as_in_the_run_.method);
-    other.step = {.dt = std::nullopt, .refine = step_parts};
+    other.step = {.dt = std::nullopt, .refine = step_parts, .unit = as_in_the_run_.step.unit};
     return with("other-method", another_method, other, unprepare);
   }
 
@@ -289,6 +290,18 @@ std::string marks_text(const Verification& verification, bool maximise) {
   std::string text;
   for (const std::string& mark : marks(verification, maximise)) text += (text.empty() ? "" : ", ") + mark;
   return text.empty() ? "verified" : text;
+}
+
+std::string verdict_text(const Verification& verification, bool maximise) {
+  std::size_t others = 0, kept = 0;
+  for (const Trial& trial : verification.trials) {
+    if (!trial.name.starts_with("reborn")) continue;
+    ++others;
+    kept += held(verification, trial, maximise);
+  }
+  const std::string marks = marks_text(verification, maximise);
+  if (others == 0) return marks;
+  return marks + " in this life, kept in " + std::to_string(kept) + " of " + std::to_string(others) + " others";
 }
 
 }  // namespace evodevo

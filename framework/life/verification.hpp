@@ -90,5 +90,8 @@ struct Mark {
 std::optional<Mark> first_mark(const Verification& verification, bool maximise);
 /// Returns the marks as a text, such as "artefact, passive"; "verified" if there are none.
 std::string marks_text(const Verification& verification, bool maximise);
+/// Returns what the trials say of the individual, in this life and in others: its marks and, if it was born again, how
+/// often it kept its fitness then, such as "verified in this life, kept in 1 of 3 others".
+std::string verdict_text(const Verification& verification, bool maximise);
 
 }  // namespace evodevo

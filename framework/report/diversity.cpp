@@ -61,6 +61,13 @@ std::optional<double> NicheMap::qd_score(const MapState& state) const {
   return objective.maximise ? std::optional(state.sum) : std::nullopt;
 }
 
+namespace {
+
+/// What an elite adds to the QD score.
+double credit(double score) { return std::max(score, 0.0); }
+
+}  // namespace
+
 NicheMap niche_map(const Archive& archive) {
   NicheMap map{archive.objectives().front(), archive.descriptors(), {}, {}};
   map.axes.resize(std::min<std::size_t>(map.axes.size(), 2));
@@ -77,9 +84,9 @@ NicheMap niche_map(const Archive& archive) {
       const auto [found, is_new] = elites.emplace(cell, Elite{cell, next->id, next->score});
       Elite& elite = found->second;
       state.filled += is_new;
-      if (is_new) state.sum += elite.score;
+      if (is_new) state.sum += credit(elite.score);
       if (!is_better(next->score, elite.score, map.objective)) continue;
-      state.sum += next->score - elite.score;
+      state.sum += credit(next->score) - credit(elite.score);
       elite = {cell, next->id, next->score};
     }
     map.history.push_back(state);

@@ -18,7 +18,7 @@ struct Elite {
 /// What a map held after a generation.
 struct MapState {
   std::size_t filled = 0;  ///< number of cells with an elite
-  double sum = 0;          ///< of the first objectives of the elites
+  double sum = 0;          ///< of those first objectives of the elites that are positive
 };
 
 /// The niches of a run: a grid over the ranges of the first two descriptors, or of the only one, each divided into
@@ -34,8 +34,9 @@ struct NicheMap {
   std::size_t cells() const;
   /// Returns the share of cells that have an elite after a generation.
   double coverage(const MapState& state) const;
-  /// Returns the QD score after a generation: the sum of the elites' first objectives. There is none for an objective
-  /// to be minimised, because each further elite would make the sum worse.
+  /// Returns the QD score after a generation: the sum of the elites' first objectives, of which negative ones count as
+  /// 0, so that it never falls. There is none for an objective to be minimised, because each further elite would make
+  /// the sum worse.
   std::optional<double> qd_score(const MapState& state) const;
 };
 

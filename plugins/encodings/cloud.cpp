@@ -18,8 +18,10 @@ class Cloud final : public evodevo::Encoding {
  public:
   void parameters(evodevo::Parameters& p) override {
     p.file(file_, "file",
-           "PLY or OBJ file with a closed surface, whose volume is filled with masses, or, if it has no faces, with a "
-           "cloud of points, which become masses.");
+           "PLY, OBJ or STL file with a closed surface, whose volume is filled with masses, or, if it has no faces, "
+           "with a cloud of points, which become masses.");
+    p.choice(up_, "up", {"x", "y", "z"},
+             "Axis of the file that points up in the world; files of animals often have y.");
     p.integer(points_, "points", {4, 100'000, "1"},
               "Number of masses in the volume, or largest number of points of a cloud that become masses.");
     p.integer(points_seed_, "points_seed", {0, 4294967295.0, "1"},
@@ -30,7 +32,7 @@ class Cloud final : public evodevo::Encoding {
     p.integer(sites_, "sites", {1, 10'000, "1"},
               "Number of sites in first genomes; a mass has the nearest's material.");
     p.integer(most_sites_, "most_sites", {1, 10'000, "1"}, "Largest number of sites.");
-    p.require(!file_.path.empty(), "file", "expected a PLY or OBJ file");
+    p.require(!file_.path.empty(), "file", "expected a PLY, OBJ or STL file");
     p.require(sites_ <= most_sites_, "sites", "expected at most `most_sites`");
   }
 
@@ -38,7 +40,7 @@ class Cloud final : public evodevo::Encoding {
   /// for 1,000 points in half of the bounding box and 500 triangles. Throws std::invalid_argument if the file gives no
   /// body.
   void prepare(const evodevo::EncodingContext& context) override {
-    const Shape shape = read_shape(file_);
+    const Shape shape = read_shape(file_, up_);
     evodevo::Rng rng = context.rng(static_cast<std::uint64_t>(points_seed_));
     places_ = shape.triangles.empty() ? chosen(shape.points, rng) : filled(shape, rng);
     half_ = shape.half;
@@ -99,6 +101,7 @@ class Cloud final : public evodevo::Encoding {
 
   std::vector<Vec3> filled(const Shape& shape, evodevo::Rng& rng) const {
     const Vec3 half = shape.half;
+    const std::string fault = surface_fault(shape);
     std::vector<Vec3> inside;
     for (std::size_t tries = 1; inside.size() < static_cast<std::size_t>(points_); ++tries) {
       const double x = rng.uniform(-half.x, half.x), y = rng.uniform(-half.y, half.y);
@@ -109,14 +112,15 @@ class Cloud final : public evodevo::Encoding {
                                     " triangles with " + std::to_string(points_) +
                                     " points takes too long; expected fewer triangles or points");
       if (tries >= 10'000 && inside.size() < tries / 400)
-        throw std::invalid_argument(file_.path +
-                                    ": the surface encloses less than 0.5 % of its bounding box; expected "
-                                    "a closed surface whose faces are anticlockwise as seen from outside");
+        throw std::invalid_argument(file_.path + ": the surface " +
+                                    (fault.empty() ? "encloses less than 0.5 % of its bounding box" : fault) +
+                                    "; expected a closed surface whose faces are anticlockwise as seen from outside");
     }
     return inside;
   }
 
   evodevo::InputFile file_;
+  std::string up_ = "z";
   std::int64_t points_ = 1000;
   std::int64_t points_seed_ = 1;
   std::int64_t neighbours_ = 25;

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <stdexcept>
 
 namespace evodevo {
 namespace {
 
-constexpr std::string_view what_is_read = "expected a PLY or OBJ file with vertices";
+constexpr std::string_view what_is_read = "expected a PLY, OBJ or STL file with vertices";
 
 /// Returns the index of a point from 0. OBJ counts from 1, or back from the latest vertex if the index is negative.
 std::int64_t read_corner(std::string_view word, std::size_t points) {
@@ -48,6 +49,8 @@ Shape read_obj(std::string_view content) {
   return shape;
 }
 
+using Vec3Key = std::array<double, 3>;
+
 bool is_finite(Vec3 p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 void check(const Shape& shape) {
@@ -78,6 +81,11 @@ Box bounding_box(const Shape& shape) {
   return box;
 }
 
+/// Turns the shape so that an axis becomes z. The handedness stays, so that no surface is turned inside out.
+void turn_up(std::string_view axis, Shape& shape) {
+  for (Vec3& p : shape.points) p = axis == "x" ? Vec3{p.y, p.z, p.x} : axis == "y" ? Vec3{p.z, p.x, p.y} : p;
+}
+
 void centre_and_scale(Shape& shape) {
   const Box box = bounding_box(shape);
   const double longest = box.longest_side();
@@ -98,17 +106,42 @@ void Shape::add_polygon(const std::vector<std::int64_t>& corners) {
   for (std::size_t i = 2; i < corners.size(); ++i) triangles.push_back({corners[0], corners[i - 1], corners[i]});
 }
 
-Shape read_shape(const InputFile& file) {
+Shape read_shape(const InputFile& file, std::string_view up) {
   try {
-    const std::string_view content = file.content;
+    std::string_view content = file.content;
+    if (content.starts_with("\xef\xbb\xbf")) content.remove_prefix(3);  // the byte order mark of UTF-8
     const bool is_ply = content.starts_with("ply\n") || content.starts_with("ply\r\n");
-    Shape shape = is_ply ? read_ply(content) : read_obj(content);
+    if (!is_ply && !is_stl(content) && content.find('\0') != std::string_view::npos)
+      throw std::invalid_argument("is binary, but neither PLY nor STL; " + std::string(what_is_read));
+    Shape shape = is_ply ? read_ply(content) : is_stl(content) ? read_stl(content) : read_obj(content);
     check(shape);
+    turn_up(up, shape);
     centre_and_scale(shape);
     return shape;
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(file.path + ": " + error.what());
   }
+}
+
+std::string surface_fault(const Shape& shape) {
+  std::map<std::pair<Vec3Key, Vec3Key>, int> edges;
+  double volume = 0;
+  const auto key = [&](std::int64_t i) {
+    const Vec3& p = shape.points[static_cast<std::size_t>(i)];
+    return Vec3Key{p.x, p.y, p.z};
+  };
+  for (const auto& [i, j, k] : shape.triangles) {
+    const Vec3 &a = shape.points[static_cast<std::size_t>(i)], &b = shape.points[static_cast<std::size_t>(j)],
+               &c = shape.points[static_cast<std::size_t>(k)];
+    volume += dot(a, cross(b, c)) / 6;
+    for (const auto& [from, to] : {std::pair{i, j}, {j, k}, {k, i}}) {
+      ++edges[{key(from), key(to)}];
+      --edges[{key(to), key(from)}];
+    }
+  }
+  const auto open = std::ranges::count_if(edges, [](const auto& edge) { return edge.second > 0; });
+  if (open > 0) return "is open: it ends at " + std::to_string(open) + " edges";
+  return volume < 0 ? "is inside out: its faces are clockwise as seen from outside" : "";
 }
 
 double winding_number(const Shape& shape, Vec3 point) {
@@ -124,7 +157,7 @@ double winding_number(const Shape& shape, Vec3 point) {
     const auto& [a, length_a] = corners[static_cast<std::size_t>(triangle[0])];
     const auto& [b, length_b] = corners[static_cast<std::size_t>(triangle[1])];
     const auto& [c, length_c] = corners[static_cast<std::size_t>(triangle[2])];
-    const Vec3 normal{b.y * c.z - b.z * c.y, b.z * c.x - b.x * c.z, b.x * c.y - b.y * c.x};
+    const Vec3 normal = cross(b, c);
     // half of the triangle's solid angle (Van Oosterom and Strackee 1983)
     half_angles += std::atan2(dot(a, normal), length_a * length_b * length_c + dot(a, b) * length_c +
                                                   dot(b, c) * length_a + dot(c, a) * length_b);

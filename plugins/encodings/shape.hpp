@@ -33,10 +33,11 @@ struct Shape {
   void add_polygon(const std::vector<std::int64_t>& corners);
 };
 
-/// Reads a PLY file, or an OBJ file if the content does not begin like a PLY file. The bounding box of the result, in
-/// which a surface's points without triangles do not count, is centred on the origin, and its longest side is 2. Throws
-/// std::invalid_argument with the name of the file, the place in it, and what is expected.
-Shape read_shape(const InputFile& file);
+/// Reads a PLY or STL file, or an OBJ file if the content begins like neither. The axis of the file that points up,
+/// "x", "y" or "z", becomes z. The bounding box of the result, in which a surface's points without triangles do not
+/// count, is centred on the origin, and its longest side is 2. Throws std::invalid_argument with the name of the file,
+/// the place in it, and what is expected.
+Shape read_shape(const InputFile& file, std::string_view up);
 
 /// Returns how many times the surface winds around a point (generalised winding number: Jacobson et al. 2013): 1 inside
 /// of a closed surface, 2 inside of two that overlap, 0 outside. Takes time in proportion to the number of points and
@@ -46,6 +47,14 @@ double winding_number(const Shape& shape, Vec3 point);
 /// Reads the vertices and faces of a PLY file (Turk 1994), whose indices may be out of range. Throws
 /// std::invalid_argument with the place in the file and what is expected.
 Shape read_ply(std::string_view content);
+
+/// Whether a file is an STL file, as text or in binary.
+bool is_stl(std::string_view content);
+/// Reads the triangles of an STL file. Throws like read_ply().
+Shape read_stl(std::string_view content);
+
+/// What keeps a surface from enclosing a volume: that it is inside out or open, or an empty text.
+std::string surface_fault(const Shape& shape);
 
 /// Removes the first line of a text and returns it without its line end.
 inline std::string_view next_line(std::string_view& text) {

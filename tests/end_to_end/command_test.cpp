@@ -100,7 +100,8 @@ TEST_F(Command, ARunThatVerifiesItsFrontTellsWhomItRefuses) {
 
 TEST_F(Command, FailedBodiesNeverReachAReportAsNumbers) {
   // gravity and drag too strong for this time step: every valid body diverges
-  const std::string told = run({"scene.drag.coefficient=1e6", "scene.gravity.acceleration=1000"});
+  const Words extreme = setting({"scene.drag.coefficient=1e6", "scene.gravity.acceleration=1000"});
+  const std::string told = output_of(joined(program({"run", file_, "--out", folder_, "--device", "cpu"}), extreme), 1);
   EXPECT_THAT(told, naming("best none  median none", "no individual", "fitness", " show " + folder_));
   const auto json = shown();
   EXPECT_TRUE(json.at("best").is_null());
@@ -175,6 +176,39 @@ TEST_F(Command, ABodyComesOutWithEveryEditOfItsLifeAndGoesIntoAScene) {
   std::size_t lines = 0;
   for (std::string line; std::getline(stream, line);) ++lines;
   EXPECT_EQ(lines, 1 + 21 * born.at("masses").size());
+}
+
+TEST_F(Command, WhatCanNeverWalkIsToldByCheckAndByTheRun) {
+  for (const auto& [values, told] : std::initializer_list<std::pair<Words, Words>>{
+           {{R"(encoding.materials=["air"])"}, {"warning: none of the first 6 random robots", "body", "air"}},
+           {{R"(encoding.materials=["bone","tissue"])"}, {"warning: none of the first 6 random robots", "muscle"}},
+           {{"materials.muscle.amplitude=0", "materials.muscle2.amplitude=0"},
+            {"warning: none of the first", "muscle"}},
+           {{"scene={gravity={}}"}, {"warning: [scene.gravity]", "no floor"}}}) {
+    const std::string checked = said(joined({"check", file_}, setting(values)));
+    for (const std::string& part : told) EXPECT_THAT(checked, HasSubstr(part)) << values.front();
+  }
+  EXPECT_THAT(said({"check", file_}), Not(HasSubstr("warning")));
+  const Words all_air{"run", file_, "--out", folder_, "--set", R"(encoding.materials=["air"])"};
+  const std::string ended = output_of(program(all_air), 1);
+  EXPECT_THAT(ended,
+              naming("warning: none of the first 6", "no individual has a fitness", "invalid: ", "show " + folder_));
+  EXPECT_THAT(ended, Not(HasSubstr("verifying")));
+}
+
+TEST_F(Command, EachLineOfTheSummaryFitsATerminalAndEachCommandAShell) {
+  const std::string file = scratch_.write("my exp.toml", small_experiment), folder = (scratch_ / "my run").string();
+  const std::string told = said({"run", file, "--out", folder, "--set", "experiment.verify_front=true"});
+  EXPECT_THAT(told, naming("show '" + folder + "'\n", "body '" + folder + "' --individual ", "film '" + folder + "'"));
+  std::istringstream lines(told.substr(told.find("speed: ")));
+  for (std::string line; std::getline(lines, line) && !line.starts_with("verifying");)
+    EXPECT_LE(line.size(), 80u) << line;
+  const std::string complete = said({"resume", folder});
+  EXPECT_THAT(complete, naming("show '" + folder + "'",
+                               "'experiment.start=" + fs::path(folder).lexically_normal().string() + "'"));
+  fs::create_directory(scratch_ / "exps");
+  const std::string other = scratch_.write("exps/other.toml", small_experiment);
+  said({"check", other, "--set", "experiment.start=" + folder});
 }
 
 TEST_F(Command, AYokedLifeIsLivedAgainToTheSameBits) {

@@ -154,6 +154,11 @@ TEST(Conformance, BlocksOfAnEncodingOfTheSameLibraryRecordsOfMassesAndMemoryAreT
 }
 
 TEST(Conformance, ARequiredFileComesFromTheExperiment) {
+  const std::string text = testing::said({"conform", faulty("special").string(), "--operator", "by-file"});
+  const std::size_t reason = text.find("--experiment");
+  ASSERT_NE(reason, std::string::npos);
+  EXPECT_EQ(text.find("--experiment", reason + 1), std::string::npos) << "a reason is told once:\n" << text;
+  EXPECT_THAT(text, ::testing::HasSubstr(": as in "));
   const Outcomes without = special("by-file");
   EXPECT_THAT(without.at("threads"), at_place("skipped ", "\"file\"", "--experiment"));
   for (const auto& [name, outcome] : without)

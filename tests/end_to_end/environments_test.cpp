@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "evolution/archive/archive.hpp"
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
 #include "support/program.hpp"
@@ -140,6 +141,21 @@ TEST_F(Environments, TheTableNamesScenesAndCycles) {
     }
   EXPECT_THAT(environments({flat_, weak, "--starts", "2", "--all"}),
               naming("after cycle  1", "after cycle  5", "after cycle  6"));
+}
+
+TEST_F(Environments, OfARunTakesTheBestIndividualUnlessOthersAreNamed) {
+  const std::string folder = (scratch_ / "run").string();
+  said({"run", flat_, "--out", folder, "--set", "experiment.verify=0"});
+  const std::uint32_t best = Archive::read(folder).best(1).at(0);
+  const Words command{"environments", flat_, "--run", folder, "--starts", "1", "--json"};
+  const auto grown = [](const Json& answer) { return answer.at("scenes").at(0).at("starts").at(0).at("body"); };
+  const Json chosen = Json::parse(said(command));
+  ASSERT_EQ(chosen.size(), 1u);
+  EXPECT_EQ(chosen.at(0).at("individual"), best);
+  EXPECT_EQ(grown(chosen.at(0)).at("springs").size(),
+            Json::parse(said({"body", folder, "--matured"})).at("springs").size());
+  const std::string other = std::to_string(best == 0 ? 1 : 0);
+  EXPECT_EQ(Json::parse(said(joined(command, {"--individual", other}))).at(0).at("individual").dump(), other);
 }
 
 TEST_F(Environments, OneGenomeNeedsOneMeaningAndADevelopment) {

@@ -152,7 +152,8 @@ TEST_F(Interruption, ASignalEndsARunAfterItsGenerationAndResumeOrTheSameCommandF
     EXPECT_EQ(finished(folder), true);
     EXPECT_EQ(Archive::read(folder).provenances().size(), 1u);
     EXPECT_THAT(output_of(resume_command(name)), Not(HasSubstr("warning")));
-    EXPECT_THAT(output_of(same), naming(folder, "complete", "75 evaluations", "--set experiment.start=" + folder));
+    EXPECT_THAT(output_of(same), naming(folder, "complete", "75 evaluations",
+                                        "--set experiment.start=" + fs::path(folder).lexically_normal().string()));
     EXPECT_THAT(output_of(joined(same, {"--seed", "83"}), 2),
                 naming(folder, "[experiment] seed = 7", "[experiment] seed = 83", "--out"));
     expect_same("straight", name);

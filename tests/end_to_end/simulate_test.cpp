@@ -4,14 +4,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "analysis/ground.hpp"
 #include "evolution/archive/archive.hpp"
 #include "life/evaluation.hpp"
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
+#include "support/process.hpp"
 #include "support/program.hpp"
 #include "support/scratch.hpp"
 
@@ -20,6 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace testing;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using Json = nlohmann::ordered_json;
 
@@ -142,6 +146,46 @@ TEST_F(Simulate, ABodyLivesAsInItsRunUnderItsLoadAndOnItsGroundNewbornOrMatured)
   expect_same_bits(matured_last, life->go_on().living.state);
 }
 
+/// Returns the distance along x between the centres of mass of two moments, in body lengths at the first one.
+double body_lengths(const Json& body, const Seen& from, const Seen& to) {
+  double total = 0;
+  Vec3 moved, lowest = from.position[0], highest = lowest;
+  for (std::size_t i = 0; i < from.position.size(); ++i) {
+    const double mass = body.at("masses").at(i).at("mass");
+    total += mass;
+    moved = moved + (to.position[i] - from.position[i]) * mass;
+    const Vec3& p = from.position[i];
+    lowest = {std::min(lowest.x, p.x), std::min(lowest.y, p.y), std::min(lowest.z, p.z)};
+    highest = {std::max(highest.x, p.x), std::max(highest.y, p.y), std::max(highest.z, p.z)};
+  }
+  const Vec3 box = highest - lowest;
+  return moved.x / total / std::max({box.x, box.y, box.z});
+}
+
+TEST_F(Simulate, WithAStepOfItsOwnABodyMovesAsItDidHoweverLongOneLooks) {
+  const Words settings{"--set", "simulation.dt=auto", "--set", "development.cycle_time=0.07"};
+  said(joined({"run", file_, "--out", folder_, "--set", "experiment.verify=0", "--set", "fitness.0.settle=0", "--set",
+               "fitness.0.window=0.373"},
+              settings));
+  const Archive archive = Archive::read(folder_);
+  const double score = archive.individual(archive.best(1).at(0))->result.objectives.at(0);
+  ASSERT_GT(score, 0);
+  const std::string body = said({"body", folder_, "--matured"});
+  const Words options = joined({"--trajectory", csv_}, settings);
+  simulate(body, options, 0, "0.373");
+  const std::vector<Seen> short_look = trajectory_in(csv_);
+  EXPECT_NEAR(body_lengths(Json::parse(body), short_look.front(), short_look.back()), score, 1e-9 * score);
+  for (const std::string duration : {"0.4", "0.5131"}) {
+    simulate(body, options, 0, duration);
+    const std::vector<Seen> longer = trajectory_in(csv_);
+    ASSERT_GT(longer.size(), short_look.size()) << duration;
+    for (std::size_t i = 0; i + 1 < short_look.size(); ++i) {
+      EXPECT_EQ(longer[i].time, short_look[i].time);
+      EXPECT_EQ(longer[i].position, short_look[i].position) << "frame " << i << " of " << duration << " s";
+    }
+  }
+}
+
 TEST_F(Simulate, ABodyThatGrewInAnotherSceneGoesOnToo) {
   const Json grown = Json::parse(said({"environments", file_, "--starts", "1", "--json"}));
   const Json body = grown.at(0).at("scenes").at(0).at("starts").at(0).at("body");
@@ -247,6 +291,10 @@ TEST_F(Simulate, FaultyBodiesAreRefusedByPlaceInOneCleanLine) {
             ": masses[0].position: ", "three numbers"},
            {materials + R"("masses": [{"position": [0,0,0], "mass": -1}], "springs": []})",
             ": masses[0].mass: ", "-1 is out of range; expected at least"},
+           {materials + R"("masses": [{"position": [0,0,0], "mass": 0}], "springs": []})", ": masses: ", "0 kg"},
+           {R"({"materials": [{"stiffness": 1, "amplitude": 0.91, "frequency": 1, "phase": 0}], )" + masses +
+                R"(, "springs": []})",
+            ": materials[0].amplitude: ", "0.91 is out of range; expected 0 to 0.9"},
            {materials + masses + R"(, "springs": [{"a": 0, "b": 2, "rest_length": 1, "material": 0}]})",
             ": springs[0].b: ", "2 is not a valid index"},
            {materials + masses +
@@ -259,6 +307,45 @@ TEST_F(Simulate, FaultyBodiesAreRefusedByPlaceInOneCleanLine) {
     for (const char c : output) EXPECT_TRUE(c == '\n' || static_cast<unsigned char>(c) >= ' ') << output;
   }
   EXPECT_THAT(simulate(tetrahedron("0.2", 500), {}, 2, "0.0003"), naming("--duration 0.0003", "0.0007 s"));
+}
+
+/// Returns the JSON of two masses, 1 m apart along x, joined by a spring of 1 m.
+std::string pair_of_masses(const std::string& mass, const std::string& stiffness) {
+  return R"({"masses": [{"position": [0, 0, 2], "mass": )" + mass +
+         R"(}, {"position": [1, 0, 2], "mass": 0.2}], "springs": [{"a": 0, "b": 1, "rest_length": 1, "material": 0}],
+             "materials": [{"stiffness": )" +
+         stiffness + R"(, "amplitude": 0, "frequency": 0, "phase": 0}]})";
+}
+
+TEST_F(Simulate, AMassOf0KgIsHeldInPlace) {
+  simulate(pair_of_masses("0", "5000"), {"--trajectory", csv_, "--set", "scene={gravity={}}"}, 0, "0.35");
+  const std::vector<Seen> frames = trajectory_in(csv_);
+  for (const Seen& seen : frames) EXPECT_EQ(seen.position[0], frames.front().position[0]);
+  // a pendulum of 1 m passes the time 0.35 s at the angle at which its energy is that of its speed
+  const Vec3 hung = frames.back().position[1], hook = frames.back().position[0], speed = frames.back().velocity[1];
+  EXPECT_NEAR(norm(hung - hook), 1, 0.01);
+  EXPECT_NEAR(norm(speed) * norm(speed) / 2, 9.81 * (hook.z - hung.z), 0.02);
+  EXPECT_GT(hook.z - hung.z, 0.4);
+}
+
+TEST_F(Simulate, ABodyThatNoStepSuitsIsToldWhatToDo) {
+  EXPECT_THAT(simulate(pair_of_masses("0.2", "1e15"), {"--set", "simulation.dt=auto"}, 2),
+              AllOf(naming("own.json: invalid: unstable dt: ", "softer"), ::testing::Not(HasSubstr("simulation.dt"))));
+  EXPECT_THAT(simulate(pair_of_masses("0.2", "1e15"), {}, 2),
+              naming("own.json: invalid: unstable dt: ", "simulation.dt"));
+}
+
+TEST_F(Simulate, ATrajectoryThatASignalEndsLeavesNothingAndSaysSo) {
+  const std::string body = scratch_.write("own body.json", tetrahedron("0.2", 500));
+  fs::create_directory(folder_);
+  for (const int signal : {SIGINT, SIGTERM}) {
+    Process process(program({"simulate", body, file_, "--duration", "700000", "--trajectory", folder_ + "/t.csv"}));
+    while (fs::is_empty(folder_)) std::this_thread::yield();
+    process.send(signal);
+    EXPECT_EQ(process.wait(), 128 + signal);
+    EXPECT_THAT(process.output(), HasSubstr(folder_ + "/t.csv is not written\n"));
+    EXPECT_TRUE(fs::is_empty(folder_));
+  }
 }
 
 TEST_F(Simulate, ATrajectoryNeverTakesThePlaceOfWhatIsRead) {

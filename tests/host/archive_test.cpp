@@ -204,9 +204,9 @@ TEST_F(ArchiveTest, TakesVerificationsWhileAnotherWrites) {
 
 TEST_F(ArchiveTest, NeverWritesOverARunOrOtherThings) {
   const auto expect_refused = [&] {
-    EXPECT_THAT(
-        refusal<ArchiveError>([&] { created(); }),
-        testing::at_place(folder_.string() + ": ", "not empty", "--out", "`evodevo resume " + folder_.string() + "`"));
+    EXPECT_THAT(refusal<ArchiveError>([&] { created(); }),
+                testing::at_place(folder_.string() + ": ", "not empty", "--out",
+                                  "`evodevo resume '" + folder_.string() + "'`"));
   };
   { created(); }
   expect_refused();

@@ -60,6 +60,11 @@ TEST(BodyBuilding, JoinsNeighboursByTheMeanOfTheirMaterialsAndStandsOnTheFloor) 
   EXPECT_EQ(other.body.masses[1].rest, (Vec3{1, 0, 0}));
 }
 
+TEST(BodyBuilding, AMassThatIsJoinedToItsNeighboursNeedsAMaterial) {
+  EXPECT_THAT(fault_of(row({{0, 0}, {1, no_material}}, 1)), testing::naming("mass 1", "no material", "neighbours = 0"));
+  EXPECT_EQ(fault_of(row({{0, 0}, {1, no_material}}, 0)), "no refusal");
+}
+
 TEST(BodyBuilding, LeavesOutAirAndCountsIt) {
   // masses 1 and 2 are air and neighbours of each other; both are also joined to bone
   const BuiltBody built = build_body(row({{0, 0}, {1, 1}, {2, 1}, {3, 0}}, 3));
@@ -274,7 +279,8 @@ GivenBody awkward_body(bool lives) {
   Awkward number;
   GivenBody given;
   for (int i = 0; i < 3; ++i)
-    given.body.materials.push_back({number.positive(), number.positive(), number.positive(), number.any()});
+    given.body.materials.push_back(
+        {number.positive(), std::min(number.positive(), largest_amplitude), number.positive(), number.any()});
   for (int i = 0; i < 50; ++i) given.body.masses.push_back({number.position(), number.positive(), i % 4 - 1});
   for (std::uint32_t i = 1; i < 50; ++i) given.body.springs.push_back({i - 1, i, number.positive(), i % 3});
   for (std::size_t i = 0; i < 40; ++i) given.body.springs[i].stiffness_factor = number.positive();

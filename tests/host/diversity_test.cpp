@@ -77,8 +77,8 @@ TEST_F(Diversity, TheBestIndividualOfEachCellIsItsElite) {
             R"({"cell":[0,2],"individual":1,"value":0.5},{"cell":[2,1],"individual":3,"value":-0.25},)"
             R"({"cell":[3,0],"individual":5,"value":0.125}]})");
   ASSERT_EQ(map.history.size(), 2u);
-  EXPECT_EQ(state_json(map, map.history[0]).dump(), R"({"filled":2,"coverage":0.16666666666666666,"qd_score":0.25})");
-  EXPECT_EQ(state_json(map, map.history[1]).dump(), R"({"filled":3,"coverage":0.25,"qd_score":0.375})");
+  EXPECT_EQ(state_json(map, map.history[0]).dump(), R"({"filled":2,"coverage":0.16666666666666666,"qd_score":0.5})");
+  EXPECT_EQ(state_json(map, map.history[1]).dump(), R"({"filled":3,"coverage":0.25,"qd_score":0.625})");
   EXPECT_THAT(best_elites(map, 2), ElementsAre(1, 5));
   EXPECT_THAT(best_elites(map, 9), ElementsAre(1, 5, 3));
 

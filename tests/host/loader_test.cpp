@@ -153,6 +153,29 @@ TEST(Loader, NoParameterTakesAKeyOfTheHost) {
   EXPECT_EQ(taken_name(op), "");
 }
 
+/// An operator with a fault in each declaration but the first.
+struct Undeclared final : Operator {
+  double value = 1;
+  std::int64_t count = 1;
+  void parameters(Parameters& p) override {
+    p.real(value, "sound", {0, 1, "N"}, "A parameter without a fault.");
+    p.real(value, "sound", {0, 1, "N"}, "A parameter without a fault.");
+    p.real(value, "endless", {.low = 0, .unit = "N"}, "A parameter without bounds.");
+    p.integer(count, "unitless", {0, 1, ""}, "A parameter without a unit.");
+    p.real(value, "terse", {0, 1, "N"}, "A force.");
+    p.real(value, "unstopped", {0, 1, "N"}, "A parameter without a full stop");
+    p.real(value, "", {0, 1, "N"}, "A parameter without a name.");
+  }
+};
+
+TEST(Declarations, EachFaultIsNamed) {
+  Undeclared op;
+  EXPECT_THAT(declaration_faults(op),
+              ::testing::ElementsAre(naming("\"sound\"", "twice"), naming("\"endless\"", "finite bounds"),
+                                     naming("\"unitless\"", "no unit", "\"1\""), naming("\"terse\"", "sentence"),
+                                     naming("\"unstopped\"", "full stop"), naming("\"\"", "no name")));
+}
+
 TEST(Loader, WhatALibraryChangesWhileItIsLoadedIsPutBackAndNamed) {
   ASSERT_EQ(std::fegetround(), FE_TONEAREST);
   const std::string said = testing::warnings_of(

@@ -263,7 +263,9 @@ TEST_F(Remembering, FaultsAreNamedBeforeAnythingIsCommitted) {
   EXPECT_THAT(fault_of([](Survival& s) { s.notes.push_back({0, 2, 1}); }), testing::naming("number 2", "2 numbers"));
   EXPECT_THAT(fault_of([](Survival& s) { s.notes.push_back({0, 0, 2}); }), testing::naming("calls", "twice", "row 0"));
   EXPECT_THAT(fault_of([](Survival& s) { s.notes.push_back({99, 0, 1}); }), testing::naming("row 99", "6 rows"));
-  EXPECT_THAT(fault_of([](Survival& s) { s.rows.push_back(s.rows[0]); }), testing::naming("survivors", "different"));
+  EXPECT_THAT(fault_of([](Survival& s) { s.rows = {2, 2}; }), testing::naming("twice", "different"));
+  EXPECT_THAT(fault_of([](Survival& s) { s.rows = {999}; }), testing::naming("row 999", "1 to 6", "of 6"));
+  EXPECT_THAT(fault_of([](Survival& s) { s.rows.clear(); }), testing::naming("0 survivors", "1 to 6"));
   EXPECT_THAT(fault_of([](Survival& s) { s.memory.resize((std::size_t{128} << 20) + 1); }),
               testing::naming("134217729", "134217728"));
 }
@@ -455,6 +457,32 @@ TEST(SelectionSettings, AnOperatorThatMakesTheChildrenNeedsNoVariationAndRealGen
               testing::naming("selection.name", "\"voxel\"", "needs_real_genes", "encoding"));
   EXPECT_THAT(complaint(testing::small_with({{mutation, ""}, {crossover, ""}})),
               testing::naming("mutation", "[[mutation]]"));
+}
+
+TEST(SelectionSettings, WhereOnlyOneIsBornItHasParentsAndTheFirstGenerationFillsThePopulation) {
+  for (const auto& [keys, first] : {std::pair{"population = 1\n", 1}, {"population = 5\nchildren = 1\n", 5}}) {
+    const std::string text = testing::small_with(
+        {{"population = 6\nrandom_individuals = 1\n", keys}, {"evaluations = 24", "evaluations = 12"}});
+    const Experiment experiment = read(text);
+    EXPECT_EQ(experiment.random_individuals, 0);
+    EXPECT_EQ(read(experiment.resolved).random_individuals, 0);
+    EXPECT_TRUE(experiment.warnings.empty());
+    const testing::FinishedRun run(read(text));
+    for (std::uint32_t id = 0; id < 12; ++id) {
+      const auto individual = run.archive.individual(id);
+      EXPECT_EQ(individual->made_by == "random", id < static_cast<std::uint32_t>(first)) << id;
+      EXPECT_EQ(individual->parents.empty(), id < static_cast<std::uint32_t>(first)) << id;
+    }
+    EXPECT_EQ(run.archive.generations().front().evaluations, first);
+  }
+  const auto warned = [](const std::string& keys) {
+    return read(testing::small_with({{"population = 6\nrandom_individuals = 1\n", keys}})).warnings;
+  };
+  EXPECT_THAT(warned("population = 6\nchildren = 1\nrandom_individuals = 1\n"),
+              ::testing::ElementsAre(testing::naming("experiment.random_individuals = 1", "random", "set 0")));
+  EXPECT_THAT(warned("population = 6\nchildren = 3\nrandom_individuals = 3\n"),
+              ::testing::ElementsAre(testing::naming("experiment.random_individuals = 3", "less than 3")));
+  EXPECT_THAT(warned("population = 6\nchildren = 3\nrandom_individuals = 2\n"), ::testing::IsEmpty());
 }
 
 TEST(SelectionSettings, GenerationsHaveAsManyChildrenAsAsked) {

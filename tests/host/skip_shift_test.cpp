@@ -249,17 +249,20 @@ TEST(TimeSteps, AStepThatCannotBeComputedIsNotTold) {
   }
 }
 
-TEST(TimeSteps, StepsDivideTheirDuration) {
+TEST(TimeSteps, DependOnTheBodyAloneAndDivideACycle) {
   const auto expect = [](const Pace& pace, double dt, std::uint64_t steps) {
     EXPECT_DOUBLE_EQ(pace.dt, dt);
     EXPECT_EQ(pace.steps, steps);
   };
-  expect(pace_over(1, {.dt = 0.0005}, 1), 0.0005, 2000);
-  expect(pace_over(1, {.dt = 0.0005, .refine = 4}, 1), 0.000125, 8000);
-  expect(pace_over(1, {.dt = std::nullopt}, 0.3), 0.25, 4);
-  expect(pace_over(1, {.dt = std::nullopt, .refine = 4}, 0.3), 0.0625, 16);
-  expect(pace_over(0.25, {.dt = std::nullopt}, 0.25), 0.25, 1);
-  expect(pace_over(0.001, {.dt = std::nullopt}, 0.25), 0.001, 1);
+  expect(pace_of(1, {.dt = 0.0005}, 1), 0.0005, 2000);
+  expect(pace_of(1, {.dt = 0.0005, .refine = 4}, 1), 0.000125, 8000);
+  expect(pace_of(1, {.dt = std::nullopt}, 0.3), 0.25, 4);
+  expect(pace_of(1, {.dt = std::nullopt, .refine = 4}, 0.3), 0.0625, 16);
+  expect(pace_of(0.25, {.dt = std::nullopt}, 0.25), 0.25, 1);
+  expect(pace_of(0.001, {.dt = std::nullopt}, 0.25), 0.25, 0);
+  expect(pace_of(8.37, {.dt = std::nullopt}, 0.3), 0.25, 33);  // the step nearest to 8.37 s
+  expect(pace_of(0.07, {.dt = std::nullopt, .unit = 0.07}, 0.011), 0.01, 7);
+  expect(pace_of(1, {.dt = std::nullopt, .unit = 0.07}, 0.011), 0.01, 100);
 }
 
 }  // namespace

@@ -326,8 +326,9 @@ TEST(TimeLimit, IsADurationOrALocalTime) {
 }
 
 TEST(TimeLimit, RefusesWhatIsNoTimeInTheFuture) {
-  for (const std::string text : {"", "90", "m", "-5m", "0s", "0.9s", "1e-12h", "nanh", "infh", "1e99d", "90 m", "5x",
-                                 "2001-02-03T04:05", "2030-13-01T00:00", "tomorrow", "2030-01-31"})
+  for (const std::string text :
+       {"", "90", "m", "-5m", "0s", "0.9s", "1e-12h", "nanh", "infh", "1e99d", "90 m", "5x", "2001-02-03T04:05",
+        "2030-13-01T00:00", "2030-02-30T18:30", "2031-04-31T00:00:00", "tomorrow", "2030-01-31"})
     EXPECT_THAT(testing::refusal<UsageError>([&] { end_given_by(text); }),
                 testing::at_place("--until " + text + ": ", "90m", "T18:30"));
 }

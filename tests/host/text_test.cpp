@@ -56,6 +56,20 @@ TEST(Printable, SaysWhyATextCanBeNoName) {
   EXPECT_EQ(text_fault(std::string(300, 'a')), "");
 }
 
+TEST(ShellWord, ReachesAProgramUnchanged) {
+  for (const std::string word : {"runs/a-1", "", "my robot", "it's", "$HOME `x` \\ \"q\"", "*", "a\nb\x1b[0m", "\u00e9",
+                                 "\xff", "-n", "~", "a;b"}) {
+    FILE* shell = popen(("bash -c " + shell_word("printf %s " + shell_word(word))).c_str(), "r");
+    ASSERT_NE(shell, nullptr);
+    std::string said(100, '\0');
+    said.resize(std::fread(said.data(), 1, said.size(), shell));
+    EXPECT_EQ(pclose(shell), 0);
+    EXPECT_EQ(said, word);
+    EXPECT_EQ(printable(shell_word(word)), shell_word(word)) << "it disturbs no terminal";
+  }
+  EXPECT_EQ(shell_word("runs/a_b-1.x"), "runs/a_b-1.x") << "it stays as it is if it can";
+}
+
 TEST(Suggestion, IsQuickForWordsOfAnyLength) {
   const std::vector<std::string> known{"seed", "population", "random_individuals", "evaluations"};
   EXPECT_EQ(nearest(std::string(10'000'000, 's'), known), "");

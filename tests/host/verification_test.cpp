@@ -83,6 +83,22 @@ TEST(Verify, AWalkerIsOne) {
   EXPECT_THROW(value(walker, "reborn-1"), std::out_of_range) << "that is what perturbed-1 to -3 are";
 }
 
+TEST(Verify, AVerdictSaysWhatOtherLivesSay) {
+  Verification verification{.individual = 1, .fitness = 3, .trials = {}};
+  const auto add = [&](const std::string& name, double value) {
+    verification.trials.push_back({.name = name, .reason = "", .value = value});
+  };
+  for (const char* name : {"quarter-step", "other-method", "settled"}) add(name, 3);
+  add("no-muscles", 0);
+  EXPECT_EQ(verdict_text(verification, true), "verified") << "it was not born again";
+  add("reborn-1", 1.4);
+  add("reborn-2", 1.6);
+  add("reborn-3", -3);
+  EXPECT_EQ(verdict_text(verification, true), "verified in this life, kept in 1 of 3 others");
+  verification.trials.front().value = 0;
+  EXPECT_EQ(verdict_text(verification, true), "artefact in this life, kept in 1 of 3 others");
+}
+
 TEST(Verify, BeforeTheFrontMakesTheSameTrialsToTheFirstMark) {
   const Experiment experiment = testing::read(walkers);
   const auto simulator = simulator_for(experiment);

@@ -65,6 +65,44 @@ struct Mesh {
     }
     return text;
   }
+
+  /// Calls `use(a, b, c)` with the corners of each triangle.
+  template <class Use>
+  void for_each_triangle(const Use& use) const {
+    const auto corner = [&](int i) { return points[static_cast<std::size_t>(i)]; };
+    for (const auto& face : faces)
+      for (std::size_t i = 2; i < face.size(); ++i) use(corner(face[0]), corner(face[i - 1]), corner(face[i]));
+  }
+  std::string ascii_stl() const {
+    std::ostringstream text;
+    text.precision(17);
+    text << "solid by hand\n";
+    for_each_triangle([&](const Vec3& a, const Vec3& b, const Vec3& c) {
+      text << "  facet normal 0 0 0\n    outer loop\n";
+      for (const Vec3& p : {a, b, c}) text << "      vertex " << p.x << ' ' << p.y << ' ' << p.z << '\n';
+      text << "    endloop\n  endfacet\n";
+    });
+    text << "endsolid\n";
+    return text.str();
+  }
+  std::string binary_stl(std::string text) const {
+    text.resize(80, ' ');
+    std::string triangles;
+    std::uint32_t count = 0;
+    const auto put = [](auto number, std::string& to) {
+      auto bytes = std::bit_cast<std::array<char, sizeof number>>(number);
+      if constexpr (std::endian::native == std::endian::big) std::reverse(bytes.begin(), bytes.end());
+      to.append(bytes.data(), bytes.size());
+    };
+    for_each_triangle([&](const Vec3& a, const Vec3& b, const Vec3& c) {
+      ++count;
+      for (const Vec3& p : {Vec3{}, a, b, c})
+        for (const double number : {p.x, p.y, p.z}) put(static_cast<float>(number), triangles);
+      put(std::uint16_t{0}, triangles);
+    });
+    put(count, text);
+    return text + triangles;
+  }
 };
 
 /// The prism over a polygon whose corners are anticlockwise, from z = 0 to z = `height`.

@@ -18,6 +18,36 @@ TEST_F(CloudFile, IsTheSameFromAnyFormat) {
   EXPECT_EQ(places(mesh.binary_ply(true)), expected);
 }
 
+TEST_F(CloudFile, FromStlFillsTheSameVolume) {
+  const Mesh mesh = cuboid({0, 0, 0}, {1, 2, 4});
+  const auto expected = places(mesh.obj());
+  EXPECT_EQ(places(mesh.ascii_stl()), expected);
+  EXPECT_EQ(places(mesh.binary_stl("")), expected);
+  EXPECT_EQ(places(mesh.binary_stl("solid")), expected) << "some binary files begin like text";
+  EXPECT_THAT(complaint("solid a\nfacet normal 0 0 1\n"), naming("no triangles", "STL"));
+  EXPECT_THAT(complaint("solid a\n facet\n vertex 0 0 0\n vertex 1 0 0\n endfacet\n"), naming("line 5", "2 vertices"));
+  EXPECT_THAT(complaint("solid a\n facet\n vertex 0 0\n"), naming("line 3", "three coordinates"));
+}
+
+TEST_F(CloudFile, AByteOrderMarkChangesNothing) {
+  const Mesh mesh = cuboid({0, 0, 0}, {1, 2, 4});
+  for (const std::string& text : {mesh.obj(), mesh.ascii_ply(), mesh.ascii_stl()})
+    EXPECT_EQ(places("\xef\xbb\xbf" + text), places(text));
+}
+
+TEST_F(CloudFile, StandsOnTheAxisThatPointsUp) {
+  const Mesh mesh = cuboid({0, 0, 0}, {1, 2, 4});
+  for (const auto& [up, height] : {std::pair{"x", 0.5}, {"y", 1.0}, {"z", 2.0}}) {
+    Vec3 low{9, 9, 9}, high{-9, -9, -9};
+    for (const Vec3& p : places(mesh.obj(), "up = '" + std::string(up) + "'")) {
+      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    EXPECT_NEAR(high.z - low.z, height, 0.05 * height) << up;
+    EXPECT_NEAR((high.x - low.x) * (high.y - low.y) * (high.z - low.z), 1, 0.1) << up;
+  }
+}
+
 TEST_F(CloudFile, ReadsWhatObjFilesMayHave) {
   const std::string plain = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
   const std::string rich =
@@ -44,13 +74,13 @@ TEST_F(CloudFile, ReadsWhatPlyFilesMayHave) {
 
 TEST(CloudWithoutFile, SaysWhatToSet) {
   EXPECT_THAT([] { make<Encoding>("cloud"); },
-              ::testing::ThrowsMessage<ConfigError>(naming("test.file", "PLY or OBJ file")));
+              ::testing::ThrowsMessage<ConfigError>(naming("test.file", "PLY, OBJ or STL file")));
 }
 
 TEST_F(CloudFile, NamesPlaceAndRemedyOfABrokenObjFile) {
   const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
-  EXPECT_THAT(complaint(""), naming("no vertices", "PLY or OBJ"));
-  EXPECT_THAT(complaint("solid stl\nfacet normal 0 0 1\n"), naming("no vertices", "PLY or OBJ"));
+  EXPECT_THAT(complaint(""), naming("no vertices", "PLY, OBJ or STL"));
+  EXPECT_THAT(complaint(std::string("\x89PNG\r\n\x1a\n\0\0f 7", 13)), naming("binary", "PLY, OBJ or STL"));
   EXPECT_THAT(complaint("v 0 0 0\nv 1 nan 0\n"), naming("vertex 2", "not finite"));
   EXPECT_THAT(complaint("v 0 0 0\nv 1 1e999 0\n"), naming("line 2", "three coordinates"));
   EXPECT_THAT(complaint("v 0 0 0\n\nv 1 0\n"), naming("line 3", "three coordinates"));
@@ -68,10 +98,12 @@ TEST_F(CloudFile, NamesPlaceAndRemedyOfABrokenObjFile) {
 }
 
 TEST_F(CloudFile, NamesASurfaceThatEnclosesNoVolume) {
-  EXPECT_THAT(complaint("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n"), naming("encloses", "closed surface"));
+  EXPECT_THAT(complaint("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n"), naming("open", "3 edges", "closed surface"));
   Mesh inwards = cuboid({0, 0, 0}, {1, 1, 1});
   for (auto& face : inwards.faces) std::reverse(face.begin(), face.end());
-  EXPECT_THAT(complaint(inwards.obj()), naming("encloses", "anticlockwise"));
+  EXPECT_THAT(complaint(inwards.obj()), naming("inside out", "anticlockwise"));
+  EXPECT_THAT(complaint("v 0 0 0\nv 1 1 1\nv 1e-4 0 0\nv 0 1e-4 0\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n"),
+              naming("encloses", "0.5 %"));
 }
 
 TEST_F(CloudFile, NamesPlaceAndRemedyOfABrokenPlyFile) {
@@ -117,9 +149,11 @@ TEST_F(CloudFile, ReservesNothingForWhatAHeaderPromises) {
 
 TEST_F(CloudFile, BearsAnyCutAndAnyChangedByte) {
   const Mesh mesh = cuboid({0, 0, 0}, {1, 1, 1});
-  for (const std::string& whole : {mesh.obj(), mesh.ascii_ply(), mesh.binary_ply(false)}) {
+  for (const std::string& whole :
+       {mesh.obj(), mesh.ascii_ply(), mesh.binary_ply(false), mesh.ascii_stl(), mesh.binary_stl("")}) {
     ASSERT_EQ(complaint(whole), "");
-    for (std::size_t length = 0; length < whole.size(); length += 5) complaint(whole.substr(0, length));
+    for (std::size_t length = 0; length < whole.size(); length += std::max<std::size_t>(5, whole.size() / 100))
+      complaint(whole.substr(0, length));
     Rng rng = stream(9);
     for (int i = 0; i < 150; ++i) {
       std::string other = whole;

@@ -185,8 +185,6 @@ Reference reference(const Body& body, State state, const Scene& scene, double dt
   return result;
 }
 
-Vec3 cross(Vec3 a, Vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
-
 Momentum momentum(const Body& body, const State& state) {
   Momentum sum;
   for (std::size_t i = 0; i < body.masses.size(); ++i) {

@@ -118,7 +118,6 @@ struct Momentum {
   Vec3 linear, angular;  ///< kg m/s, kg m^2/s about the origin
   double scale = 0;      ///< sum of |m v|, kg m/s
 };
-Vec3 cross(Vec3 a, Vec3 b);
 Momentum momentum(const Body& body, const State& state);
 
 /// Whether all numbers of a result are finite.

@@ -107,11 +107,11 @@ class OfExperiments(unittest.TestCase):
         cls.tables = {"scene": settings["scene"], "simulation": {**settings["simulation"], "device": "cpu"}}
         cls.bodies = [cls.run_.body(0), cls.run_.body(cls.run_.best().index[0], matured=True), hung(), cls.run_.body(3)]
 
-    def trajectory(self, body, seconds):
+    def trajectory(self, body, seconds, *options):
         """Returns the [frames, n, 3] positions and velocities that `evodevo simulate` writes."""
         file, table = Path(self.scratch, "body.json"), Path(self.scratch, "motion.csv")
         file.write_text(json.dumps(body.json), encoding="utf-8")
-        call("simulate", file, self.file, "--duration", seconds, "--device", "cpu", "--trajectory", table)
+        call("simulate", file, self.file, "--duration", seconds, "--device", "cpu", "--trajectory", table, *options)
         rows = pd.read_csv(table, float_precision="round_trip")
         shape = (-1, len(body.masses), 3)
         return rows[["x", "y", "z"]].to_numpy().reshape(shape), rows[["vx", "vy", "vz"]].to_numpy().reshape(shape)
@@ -124,6 +124,14 @@ class OfExperiments(unittest.TestCase):
             np.testing.assert_array_equal(result.velocities, velocities[-1])
             np.testing.assert_array_equal(result.samples["positions"], positions.astype(np.float32))
             self.assertGreater(np.abs(positions[-1] - positions[0]).max(), 1e-3, "it moves")
+        for seconds in (0.5, 0.537):
+            positions, velocities = self.trajectory(self.bodies[1], seconds, "--set", "simulation.dt=auto",
+                                                    "--set", "development.cycle_time=0.07")
+            result, = core.simulate([self.bodies[1]], seconds, scene=self.tables["scene"], cycle_time=0.07,
+                                    simulation={**self.tables["simulation"], "dt": "auto"})
+            np.testing.assert_array_equal(result.positions, positions[-1])
+            np.testing.assert_array_equal(result.velocities, velocities[-1])
+            self.assertAlmostEqual(0.07 / result.dt, round(0.07 / result.dt), places=9)
 
     def test_a_batch_gives_what_each_body_gives_alone(self):
         order = {**self.tables, "record": ["stress", "muscle_work"], "sample_hz": 20,

@@ -101,7 +101,8 @@ class Progress(unittest.TestCase):
     def test_compares_runs_after_equal_numbers_of_generations(self):
         with tempfile.TemporaryDirectory() as scratch:
             best = {}
-            for name, more in (("evo", ["experiment.children=4"]), ("evo-devo", ["experiment.children=8"])):
+            small, large = ["experiment.population=4", "experiment.children=4"], ["experiment.children=8"]
+            for name, more in (("evo", small), ("evo-devo", large)):
                 best[name] = progress.evodevo.Run(make_run(name, scratch, *more)).generations["best"].to_list()
             self.assertEqual([*map(len, best.values())], [6, 3])
             text = io.StringIO()

@@ -73,8 +73,10 @@ export function reported(...words) {
 export function barrenRun() {
   const file = scratch.path("barren.toml");
   writeFileSync(file, readFileSync(scratch.file, "utf8").replace("stiffness = 3000", "stiffness = 0"));
-  const soft = ["muscle", "muscle2", "tissue", "bone"].map((name) => `materials.${name}.stiffness=0`);
-  return { run: ran("barren", soft, file), file, soft: soft.flatMap((setting) => ["--set", setting]) };
+  const materials = ["muscle", "muscle2", "tissue", "bone"].map((name) => `materials.${name}.stiffness=0`);
+  const soft = materials.flatMap((setting) => ["--set", setting]), run = scratch.path("barren");
+  assert.throws(() => evodevo("run", file, "--out", run, ...soft), (error) => error.status === 1);
+  return { run, file, soft };
 }
 
 /** Returns the result of an SQL query in a run's archive, without using evodevo. */

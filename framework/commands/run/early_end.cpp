@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <ctime>
 
+#include "base/output_file.hpp"
+
 namespace evodevo {
 namespace {
 
@@ -30,7 +32,10 @@ bool is_copy() {
   return last >= 0 && current - last < between_copies;
 }
 
-void end(int) { _exit(ended_early); }
+void end(int) {
+  leave_no_unfinished_files();
+  _exit(ended_early);
+}
 
 void stop_or_end(int signal) {
   if (signal == SIGUSR1 && is_copy()) return;

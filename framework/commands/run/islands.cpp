@@ -48,7 +48,7 @@ bool are_finished(const Islands& islands) {
   return true;
 }
 
-std::string resume_command_for(const fs::path& folder) { return program_name() + " resume " + folder.string(); }
+std::string resume_command_for(const fs::path& folder) { return shell_command({"resume", folder.string()}); }
 
 void verify_best_of_all(Islands& islands, Simulator& simulator, std::size_t count) {
   std::vector<std::size_t> counts(islands.archives.size());  // of an island, its own best come first among all
@@ -62,13 +62,11 @@ void verify_best_of_all(Islands& islands, Simulator& simulator, std::size_t coun
   }
 }
 
-void print_best(const Islands& islands) {
+/// Prints the best of all islands. Returns whether there is one.
+bool print_best(const Islands& islands) {
   const std::vector<Ranked> best = best_of_all(islands, 1);
-  if (best.empty())
-    std::cout << "no individual has a fitness; to see why: " << program_name() << " show "
-              << islands.archives.front().folder().string() << '\n';
-  else
-    print_best(islands.experiments[best.front().island], islands.archives[best.front().island]);
+  const std::size_t island = best.empty() ? 0 : best.front().island;
+  return print_best(islands.experiments[island], islands.archives[island]);
 }
 
 std::pair<Archive, Experiment> reopened_island(const fs::path& folder, const Given& given, const Experiment* expected) {
@@ -157,9 +155,10 @@ Observer observer_of(const Experiment& island, std::function<void(std::int64_t, 
 }
 
 int report_outcome(Islands& islands, Simulator& simulator, const IslandsProgress& progress, const RunOutput& output) {
-  print_best(islands);
+  const bool has_best = print_best(islands);
   print_speed(static_cast<double>(progress.spring_evaluations()), progress.seconds());
   const bool finished = are_finished(islands);
+  if (finished && !has_best) return 1;
   if (finished || output.ends_by_clock()) finish(islands, simulator, output);
   if (finished) return 0;
   std::cout << "ended early; to continue: " << resume_command_for(islands.folder) << std::endl;

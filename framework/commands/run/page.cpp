@@ -17,7 +17,7 @@ namespace {
 constexpr const char* page_of_run = "report.html";
 
 std::string report_command(const std::filesystem::path& folder) {
-  return program_name() + " report " + folder.string() + " --out " + (folder / page_of_run).string();
+  return shell_command({"report", folder.string(), "--out", (folder / page_of_run).string()});
 }
 
 }  // namespace

@@ -12,6 +12,8 @@
 namespace evodevo {
 namespace {
 
+constexpr std::size_t indent = 7;  ///< of what follows a heading such as "time:"
+
 std::string optional_text(const std::optional<double>& value) { return value ? short_number(*value) : "none"; }
 
 /// The part of a time of `whole` seconds in which a rank had nothing to do, percent.
@@ -126,7 +128,8 @@ void ProgressDisplay::generation_done(const Summary& summary) {
 
 void ProgressDisplay::generation_progress(double done) {
   if (!live_) return;
-  const auto batch = std::min(experiment_.newborns(), experiment_.evaluations - last_.evaluations);
+  const std::uint32_t generation = last_.evaluations > 0 ? last_.generation + 1 : 0;
+  const auto batch = std::min(experiment_.births(generation), experiment_.evaluations - last_.evaluations);
   evaluations_ = static_cast<double>(last_.evaluations) + done * static_cast<double>(batch);
   show_live();
 }
@@ -136,31 +139,38 @@ void ProgressDisplay::finish() {
   live_line_.finish([this](std::size_t columns) { return line(columns); });
 }
 
-void print_best(const Experiment& experiment, const Archive& archive) {
-  if (const auto best = archive.best(1); !best.empty()) {
-    const ArchivedIndividual individual = *archive.individual(best.front());
-    std::cout << "best: individual " << individual.id << " of generation " << individual.born << " in "
-              << archive.folder().string();
-    for (std::size_t i = 0; i < experiment.objectives.size(); ++i)
-      std::cout << ", " << experiment.objectives[i].name << ' '
-                << short_quantity(individual.result.objectives[i], experiment.objectives[i].unit);
-    std::cout << std::endl;
-    const std::string call = program_name() + ' ', folder = ' ' + archive.folder().string();
-    remarks() << "      look at the run: " << call << "show" << folder << "\n      its body:        " << call << "body"
-              << folder << " --individual " << individual.id << "\n      a film of it:    " << call << "film" << folder
-              << " --out film.mp4"
-              << "\n      test others:     " << call << "verify" << folder << " --best 10\n";
-  } else {
-    std::cout << "no individual has a fitness; to see why: " << program_name() << " show " << archive.folder().string()
-              << '\n';
+bool print_best(const Experiment& experiment, const Archive& archive) {
+  const auto best = archive.best(1);
+  const std::string folder = archive.folder().string();
+  if (best.empty()) {
+    std::cout << "no individual has a fitness";
+    if (const std::vector<Individual> population = archive.population(); !population.empty())
+      std::cout << "; the first that is left is " << name(population.front().result.status) << ": "
+                << population.front().result.reason;
+    std::cout << "; to see more: " << shell_command({"show", folder}) << '\n';
+    return false;
   }
+  const ArchivedIndividual individual = *archive.individual(best.front());
+  std::cout << "best: individual " << individual.id << " of generation " << individual.born << " in " << folder;
+  for (std::size_t i = 0; i < experiment.objectives.size(); ++i)
+    std::cout << ", " << experiment.objectives[i].name << ' '
+              << short_quantity(individual.result.objectives[i], experiment.objectives[i].unit);
+  std::cout << std::endl;
+  remarks() << "      look at the run: " << shell_command({"show", folder}) << "\n      its body:        "
+            << shell_command({"body", folder, "--individual", std::to_string(individual.id)})
+            << "\n      a film of it:    " << shell_command({"film", folder, "--out", "film.mp4"})
+            << "\n      test others:     " << shell_command({"verify", folder, "--best", "10"}) << '\n';
+  return true;
 }
 
 void print_speed(double spring_evaluations, double seconds, double verifying) {
   const double evaluating = seconds - verifying;
-  remarks() << "speed: " << short_number(spring_evaluations / evaluating) << " spring evaluations/s ("
-            << short_number(spring_evaluations) << " in " << duration_text(evaluating)
-            << (verifying > 0 ? ", without " + duration_text(verifying) + " of verification" : "") << ")" << std::endl;
+  remarks() << "speed: "
+            << wrapped(short_number(spring_evaluations / evaluating) + " spring evaluations/s (" +
+                           short_number(spring_evaluations) + " in " + duration_text(evaluating) +
+                           (verifying > 0 ? ", without " + duration_text(verifying) + " of verification" : "") + ")",
+                       indent)
+            << std::endl;
 }
 
 void print_shares(const std::vector<Share>& shares, double whole) {
@@ -176,20 +186,26 @@ void print_shares(const std::vector<Share>& shares, double whole) {
 
 void print_time_spent(const TimeSpent& time, const Simulator& simulator) {
   if (!(time.whole > 0)) return;
-  const auto share = [&](double seconds) { return fmt::format("{:.0f} %", 100 * seconds / time.whole); };
-  remarks() << "time:  simulate " << share(time.evaluation.simulate) << ", develop " << share(time.evaluation.develop)
-            << ", decode " << share(time.evaluation.decode) << ", breed " << share(time.breed) << ", select "
-            << share(time.select) << ", archive " << share(time.archive);
-  if (time.verify > 0) remarks() << ", verify " << share(time.verify);
+  // no line breaks within a part: ~ stands for its spaces
+  const auto part = [&](const char* name, double seconds) {
+    return std::string(name) + fmt::format("~{:.0f}~%", 100 * seconds / time.whole);
+  };
+  std::string text = part("simulate", time.evaluation.simulate) + ", " + part("develop", time.evaluation.develop) +
+                     ", " + part("decode", time.evaluation.decode) + ", " + part("breed", time.breed) + ", " +
+                     part("select", time.select) + ", " + part("archive", time.archive);
+  if (time.verify > 0) text += ", " + part("verify", time.verify);
   // verification also uses the device through simulators of its own, whose use is not counted
   if (const std::optional<DeviceUse> device = simulator.device_use(); device && !(time.verify > 0)) {
     const auto devices = static_cast<double>(device->devices);
-    remarks() << "; device" << (device->devices > 1 ? "s" : "") << " idle "
-              << share(time.whole - device->busy / devices);
+    text += std::string("; device") + (device->devices > 1 ? "s " : " ") +
+            part("idle", time.whole - device->busy / devices);
     if (device->portions > 1)
-      remarks() << ", each batch split into up to " << device->portions << " portions to fit into device memory";
+      text +=
+          ", each batch split into up to " + std::to_string(device->portions) + " portions to fit into device memory";
   }
-  remarks() << std::endl;
+  text = wrapped(text, indent);
+  replace_all(text, "~", " ");
+  remarks() << "time:  " << text << std::endl;
 }
 
 }  // namespace evodevo

@@ -55,8 +55,8 @@ class ProgressDisplay {
 /// Returns a time such as "3 min 20 s".
 std::string duration_text(double seconds);
 
-/// Prints the best robot and the folder of the run, or that no robot has a fitness.
-void print_best(const Experiment& experiment, const Archive& archive);
+/// Prints the best robot and the folder of the run. Returns false after it has said that no robot has a fitness.
+bool print_best(const Experiment& experiment, const Archive& archive);
 
 /// Prints the speed at which a number of spring evaluations took some seconds, of which some were spent verifying the
 /// front, whose spring evaluations are not counted.

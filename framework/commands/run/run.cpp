@@ -20,6 +20,7 @@
 #include "commands/shell/output/notices.hpp"
 #include "commands/shell/verification_report.hpp"
 #include "evolution/evolution.hpp"
+#include "evolution/first_robots.hpp"
 #include "evolution/founders.hpp"
 #include "evolution/islands/island_folders.hpp"
 #include "evolution/record_check.hpp"
@@ -45,9 +46,7 @@ fs::path new_run_folder(const std::string& name) {
   throw ArchiveError("runs: no folder can be created in it: " + error.message() + "; give another place with --out");
 }
 
-std::string resume_command_for(const Archive& archive) {
-  return program_name() + " resume " + archive.folder().string();
-}
+std::string resume_command_for(const Archive& archive) { return shell_command({"resume", archive.folder().string()}); }
 
 /// Returns a line that says which generation the run has completed and how to continue it, or an empty text if the
 /// run's file is gone.
@@ -155,7 +154,7 @@ namespace {
 
 /// Verifies the best of a run, and shows them on a page, as far as the user asks for it.
 void verify_and_show(const Experiment& experiment, Simulator& simulator, Archive& archive, const RunOutput& output) {
-  const std::size_t count = begin_ending(experiment, output, program_name() + " verify " + archive.folder().string());
+  const std::size_t count = begin_ending(experiment, output, shell_command({"verify", archive.folder().string()}));
   for (const Verification& verification : verify_best(experiment, simulator, archive, count))
     print(verification, experiment.objectives.front());
   if (!output.page) return;
@@ -187,7 +186,7 @@ int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archiv
   }
   progress.finish();
   record_time_spent(archive, time);
-  print_best(experiment, archive);
+  const bool has_best = print_best(experiment, archive);
   print_speed(static_cast<double>(progress.spring_evaluations()), progress.seconds(), time.verify);
   print_time_spent(time, simulator);
   if (farm) {
@@ -195,6 +194,7 @@ int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archiv
     farm->finish();
   }
   const bool finished = is_finished(experiment, archive.generations());
+  if (finished && !has_best) return 1;
   if (finished || output.ends_by_clock()) verify_and_show(experiment, simulator, archive, output);
   if (finished) return 0;
   std::cout << "ended early; to continue: " << resume_command_for(archive) << std::endl;
@@ -224,7 +224,8 @@ int begin(const Ranks& ranks, const std::string& file, std::vector<Experiment> i
   given_journal(given);  // so that a wrong one is reported before anything is written
   const std::unique_ptr<GenerationLog> log = given_log(given, experiment, files_of_experiment(file, experiment));
   founders(experiment);  // so that a wrong start is reported before anything is written
-  print_warnings(experiment);
+  print_warnings(experiment.warnings);
+  print_warnings(first_robots(experiment).warnings);
   if (ranks.channel()) share_host(experiment, *ranks.channel(), given.contains("mixed"));
   const auto simulator = opened_simulator(experiment);
   remember_folders_of(experiment);
@@ -240,8 +241,9 @@ int begin(const Ranks& ranks, const std::string& file, std::vector<Experiment> i
 
 /// Says that a run with islands is complete, so that there is nothing to do, and returns the exit code.
 int say_complete(const fs::path& run) {
-  std::cout << run.string() << ": the run is complete on all islands; to look at it: " << program_name() << " show "
-            << run.string() << std::endl;
+  std::cout << run.string()
+            << ": the run is complete on all islands; to look at it: " << shell_command({"show", run.string()})
+            << std::endl;
   return 0;
 }
 
@@ -249,9 +251,12 @@ int say_complete(const fs::path& run) {
 int say_complete(const Archive& archive) {
   const Summary last = archive.generations().back();
   std::cout << archive.folder().string() << ": the run is complete: " << last.evaluations << " evaluations in "
-            << last.generation + 1 << " generations; to look at it: " << program_name() << " show "
-            << archive.folder().string() << "; to go on from its population in another run: " << program_name()
-            << " run EXPERIMENT.toml --set experiment.start=" << archive.folder().string() << std::endl;
+            << last.generation + 1
+            << " generations; to look at it: " << shell_command({"show", archive.folder().string()})
+            << "; to go on from its population in another run: "
+            << shell_command({"run", "EXPERIMENT.toml", "--set",
+                              "experiment.start=" + fs::absolute(archive.folder()).lexically_normal().string()})
+            << std::endl;
   return 0;
 }
 

@@ -46,8 +46,9 @@ std::optional<double> time_until(const std::string& text) {
     read.tm_isdst = -1;  // unknown
     const char* end = strptime(text.c_str(), format, &read);
     if (end == nullptr || *end != '\0') continue;
+    const int month = read.tm_mon, day = read.tm_mday;
     const std::time_t moment = std::mktime(&read);
-    if (moment == std::time_t{-1}) return std::nullopt;
+    if (moment == std::time_t{-1} || read.tm_mon != month || read.tm_mday != day) return std::nullopt;  // no such day
     return Seconds(std::chrono::system_clock::from_time_t(moment) - std::chrono::system_clock::now()).count();
   }
   return std::nullopt;

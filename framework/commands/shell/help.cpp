@@ -1,33 +1,11 @@
 #include "commands/shell/help.hpp"
 
 #include <algorithm>
-#include <sstream>
 
 #include "base/text.hpp"
 
 namespace evodevo {
 namespace {
-
-constexpr std::size_t width = 80;
-
-/// Wraps the text to lines of at most `width` characters. Indents all lines except the first by `indent` spaces.
-std::string wrapped(const std::string& text, std::size_t indent = 0) {
-  std::istringstream words(text);
-  std::string lines;
-  std::size_t column = indent;
-  for (std::string word; words >> word;) {
-    if (column > indent && column + 1 + word.size() > width) {
-      lines += '\n' + std::string(indent, ' ');
-      column = indent;
-    } else if (column > indent) {
-      lines += ' ';
-      ++column;
-    }
-    lines += word;
-    column += word.size();
-  }
-  return lines;
-}
 
 std::string padded(const std::string& text, std::size_t size) {
   return text + std::string(size - std::min(size, text.size()), ' ');

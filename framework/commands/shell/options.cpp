@@ -192,8 +192,8 @@ std::vector<Experiment> given_islands(const std::string& file, const Given& give
                [&] { return read_islands(experiment_source(file, given)); });
 }
 
-void print_warnings(const Experiment& experiment) {
-  for (const std::string& warning : experiment.warnings)
+void print_warnings(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings)
     std::cerr << "warning: " << printable(warning, InputError::longest_message) << '\n';
 }
 
@@ -211,8 +211,8 @@ ArchivedIndividual individual_named(const Archive& archive, std::int64_t id) {
   const bool is_id = id >= 0 && id <= std::numeric_limits<std::uint32_t>::max();
   auto individual = is_id ? archive.individual(static_cast<std::uint32_t>(id)) : std::nullopt;
   if (!individual)
-    throw ArchiveError(folder + ": there is no individual " + std::to_string(id) + "; see `" + program_name() +
-                       " show " + folder + "`");
+    throw ArchiveError(folder + ": there is no individual " + std::to_string(id) + "; see `" +
+                       shell_command({"show", folder}) + "`");
   return *individual;
 }
 

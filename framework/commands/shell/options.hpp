@@ -51,8 +51,8 @@ ExperimentSource experiment_source(const std::string& file, const Given& given);
 Experiment given_experiment(const std::string& file, const Given& given);
 /// Reads the experiments of all islands of a run (read_islands()).
 std::vector<Experiment> given_islands(const std::string& file, const Given& given);
-/// Prints the warnings of an experiment on standard error.
-void print_warnings(const Experiment& experiment);
+/// Prints warnings on standard error.
+void print_warnings(const std::vector<std::string>& warnings);
 /// Returns a simulator for the experiment's device.
 std::unique_ptr<Simulator> opened_simulator(const Experiment& experiment);
 /// Returns the experiment of a run for re-simulation, possibly on a machine without a GPU.

@@ -31,7 +31,7 @@ std::vector<Verification> verify_best(const Experiment& experiment, Simulator& s
 
 void print(const Verification& verification, const Objective& objective) {
   fmt::print(std::cout, "individual {}: {} {}: {}\n", verification.individual, objective.name,
-             short_quantity(verification.fitness, objective.unit), marks_text(verification, objective.maximise));
+             short_quantity(verification.fitness, objective.unit), verdict_text(verification, objective.maximise));
   for (const Trial& trial : verification.trials) {
     const bool has_held = held(verification, trial, objective.maximise);
     const char* outcome = has_held ? "held" : trial.name == "no-muscles" ? "not held, as it should be" : "not held";

@@ -69,7 +69,7 @@ void require_empty(const fs::path& folder) {
   };
   if (!std::all_of(begin(entries), end(entries), may_stay))
     throw ArchiveError(folder.string() + ": is not empty; give another --out, or continue the run in it with `" +
-                       program_name() + " resume " + folder.string() + "`");
+                       shell_command({"resume", folder.string()}) + "`");
 }
 
 /// Throws ArchiveError unless the run's file in the folder is a regular file. Opening anything else, such as a pipe,

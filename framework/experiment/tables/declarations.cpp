@@ -31,12 +31,13 @@ void declare_run(SettingsVisitor& v, Settings& s) {
       s.hours, "hours", {0, 1e6, "h"},
       "The run also ends after the generation that completes this time of evolution, by the clock; 0: no such limit.");
   v.integer(s.population, "population", {1, 1e6}, "Number of individuals that survive each generation.");
-  v.integer(
-      s.children, "children", {0, 1e6},
-      "Number of individuals that are born in each generation, the first included; 0: as many as the population.");
+  v.integer(s.children, "children", {0, 1e6},
+            "Number of individuals that are born in each generation; 0: as many as the population. In the first "
+            "generation, at "
+            "least as many as the population are born, unless the selection operator makes the children itself.");
   v.integer(s.random_individuals, "random_individuals", {0, 1e6},
-            "Number of random individuals among those that are born in each generation; by default 0 if the selection "
-            "operator makes the children itself.");
+            "Number of random individuals among those that are born in each generation; by default 0 if only "
+            "one is born or the selection operator makes the children itself.");
   v.integer(s.verify, "verify", {0, 1000}, "Number of best individuals that are verified when the run ends.");
   v.flag(s.verify_front, "verify_front",
          "Whether individuals are verified before they enter the front; those that do not hold lose their fitness.");
@@ -120,7 +121,7 @@ void declare_probability(SettingsVisitor& v, double& probability) {
 void declare(SettingsVisitor& v, Material& material) {
   v.real(material.stiffness, "stiffness", {0, 1e12, "N/m"},
          "Spring constant; 0: the material is air, and its springs are left out.");
-  v.real(material.amplitude, "amplitude", {0, 0.9},
+  v.real(material.amplitude, "amplitude", {0, largest_amplitude},
          "Amplitude of the actuation: largest change of length, relative to the rest length.");
   v.real(material.frequency, "frequency", {0, 1e6, "Hz"}, "Frequency of the actuation.");
   v.real(material.phase, "phase", {-100, 100, "rad"}, "Phase of the actuation.");
@@ -150,7 +151,7 @@ void declare(SettingsVisitor& v, Floor& floor) {
 void declare(SettingsVisitor& v, Friction& friction) {
   v.real(friction.coefficient, "coefficient", {0, 100}, "Coefficient of Coulomb friction.");
   v.optional_real(friction.static_coefficient, "static", {0, 100},
-                  "Coefficient of static friction, which holds a mass at rest; by default the same as coefficient.");
+                  "Coefficient of static friction, which holds a mass at rest; at least coefficient, by default the same.");
   v.require(friction.holding() >= friction.coefficient, "static",
             "expected at least the coefficient, " + to_text(friction.coefficient));
 }

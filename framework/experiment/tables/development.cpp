@@ -23,6 +23,7 @@ void read_development(TomlReader& t, Settings& settings) {
   settings.development.cycles = 100;
   declare_development(t, settings);
   t.expect({"operator"});
+  settings.step.unit = settings.development.cycle_time;
   check_duration(t, "cycle_time", settings.development.cycle_time, settings.step);
   check_skip(t, settings);
 }

@@ -149,7 +149,7 @@ void read_selection(TomlReader& top, const OperatorFactory& factory, const Refer
                     Experiment& experiment, toml::table& record) {
   top.attempt([&] {
     SelectionTables(factory, references, experiment).read(top, record);
-    if (!experiment.makes_children() || asks_for_random_individuals(top)) return;
+    if (asks_for_random_individuals(top) || !(experiment.makes_children() || experiment.newborns() == 1)) return;
     experiment.random_individuals = 0;
     record["experiment"].as_table()->insert_or_assign("random_individuals", 0);
   });

@@ -165,7 +165,7 @@ Stretch Windows::in_cycle(std::int64_t cycle) const {
 }
 
 Stretch Windows::after_maturing() const {
-  return {.duration = duration_, .ends_exactly = false, .samples = after_maturing_, .counted = {}};
+  return {.duration = duration_, .samples = after_maturing_, .counted = {}};
 }
 
 }  // namespace evodevo

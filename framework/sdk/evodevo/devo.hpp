@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "evodevo/encoding.hpp"
@@ -158,9 +159,21 @@ struct NewMass {
   std::int32_t material = no_material;  ///< index into DevoContext::body.materials, or no_material
 };
 
+/// A material itself, for places where the index of one would compile, too, and be taken for a stiffness.
+struct GivenMaterial : Material {
+  GivenMaterial() = default;
+  GivenMaterial(const Material& material) : Material(material) {}
+  /// From the members of Material, in their order and units.
+  GivenMaterial(double k, double change, double hertz = 0, double radians = 0, double ratio = 0)
+      : Material{k, change, hertz, radians, ratio} {}
+  template <class Number>
+  requires std::is_arithmetic_v<Number> GivenMaterial(Number index)
+  = delete;  // an index is no material: give body.materials[index]
+};
+
 struct NewSpring {
   std::uint32_t a = 0, b = 0;  ///< indices of the two masses; see Edits
-  Material material;
+  GivenMaterial material;
   std::optional<double> rest_length;  ///< m; if not given, the length at which the new spring exerts no force
   double stiffness_factor = 1;        ///< stiffness relative to that of the material, 1
   /// Spring::phase_growth, rad. A spring that takes over the material of another one takes over this as well: if

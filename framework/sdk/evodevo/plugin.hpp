@@ -1,10 +1,15 @@
 // The interface between host and plugin: a plugin exports one function, which returns constant data.
 #pragma once
 
+#if __cplusplus < 202002L
+#error "evodevo: plugins are compiled as C++20; build with evodevo_add_plugin(), or with -std=c++20"
+#endif
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <type_traits>
 #include <version>
 
 #include "evodevo/devo.hpp"
@@ -18,7 +23,7 @@ namespace evodevo {
 inline constexpr std::uint64_t plugin_magic = 0x6f7665646f7665ull;  // "evodevo", little-endian
 /// Version of the interface. It must be raised whenever a declaration that plugins see changes its meaning, or is
 /// changed, moved, added or removed; tests/host/plugin_border_test.cpp finds changed declarations.
-inline constexpr std::uint32_t plugin_epoch = 16;
+inline constexpr std::uint32_t plugin_epoch = 17;
 
 /// Returns a hash of the sizes of structs.
 template <class... Structs>
@@ -83,7 +88,13 @@ struct PluginManifest {
 /// Returns the entry of operator class `T`.
 template <class T>
 constexpr OperatorEntry operator_entry(const char* name, const char* summary) {
-  return {T::kind.data(), name, summary, []() -> Operator* { return new T; }};
+  static_assert(!std::is_abstract_v<T>,
+                "evodevo: the operator lacks a function, or declares it otherwise than its kind; look for a missing "
+                "const, and write override behind each function to see which one");
+  if constexpr (std::is_abstract_v<T>)
+    return {};
+  else
+    return {T::kind.data(), name, summary, []() -> Operator* { return new T; }};
 }
 
 }  // namespace evodevo

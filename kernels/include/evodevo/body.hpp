@@ -18,11 +18,19 @@ struct Vec3 {
   friend Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
   friend Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
   friend Vec3 operator*(double s, Vec3 a) { return {s * a.x, s * a.y, s * a.z}; }
+  friend Vec3 operator*(Vec3 a, double s) { return s * a; }
+  friend Vec3 operator/(Vec3 a, double s) { return {a.x / s, a.y / s, a.z / s}; }
+  friend Vec3 operator-(Vec3 a) { return {-a.x, -a.y, -a.z}; }
+  Vec3& operator+=(Vec3 b) { return *this = *this + b; }
+  Vec3& operator-=(Vec3 b) { return *this = *this - b; }
+  Vec3& operator*=(double s) { return *this = s * *this; }
+  Vec3& operator/=(double s) { return *this = *this / s; }
   friend bool operator==(Vec3 a, Vec3 b) = default;
 };
 
 inline double dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 inline double norm(Vec3 a) { return std::sqrt(dot(a, a)); }
+inline Vec3 cross(Vec3 a, Vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
 
 /// An axis-aligned box (m).
 struct Box {
@@ -32,12 +40,15 @@ struct Box {
   double longest_side() const { return std::max({high.x - low.x, high.y - low.y, high.z - low.z}); }
 };
 
+/// The largest amplitude of a material: its springs never shrink to less than a tenth of their rest length.
+inline constexpr double largest_amplitude = 0.9;
+
 /// The material of a spring. The actuated rest length is L(t) = L0 (1 + amplitude sin(2 pi frequency t + phase)), and
 /// the force is stiffness (|d| - L(t)). Paper, section IV-A and Table I. A dashpot beside the spring resists changes of
 /// its length (Body::damping()).
 struct Material {
   double stiffness = 0;  ///< N/m; a spring of stiffness 0 is air and is never created
-  double amplitude = 0;  ///< relative change of length, 1
+  double amplitude = 0;  ///< relative change of length, from 0 to largest_amplitude, 1
   double frequency = 0;  ///< Hz
   double phase = 0;      ///< rad
   double damping = 0;    ///< ratio of critical damping of the two masses that a spring joins, 1

@@ -34,8 +34,8 @@ to {inference.EXACT_WITH_TIES_UP_TO}, and by the normal distribution beyond, cor
 NICHES = """\
 The map of niches divides the ranges of one or two descriptors into cells. It counts all individuals that the run ever
 evaluated, whatever its selection operator. Coverage is the share of the cells that some individual of the run lies in.
-The QD score is the sum of the best scores of the filled cells (Pugh, Soros & Stanley 2016); a cell whose best score is
-negative lowers it. Both are compared after equal numbers of evaluations only.
+The QD score is the sum of the best scores of the filled cells (Pugh, Soros & Stanley 2016), of which negative ones
+count as 0. Both are compared after equal numbers of evaluations only.
 """
 
 SCENARIOS = """\

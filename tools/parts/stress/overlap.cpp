@@ -46,7 +46,7 @@ class Robots {
     const double duration = time - now_;
     for (std::size_t i = 0; i < tasks_.size(); ++i) {
       LivingBody& living = lives_[i].living;
-      const Pace pace = pace_over(duration, experiment_.step, living.longest_dt);
+      const Pace pace = pace_of(duration, experiment_.step, living.longest_dt);
       tasks_[i].body = &living.body;
       tasks_[i].state = &living.state;
       tasks_[i].dt = pace.dt;

@@ -34,12 +34,13 @@ class BodyReader {
 
     std::size_t size() const { return static_cast<std::size_t>(array_.shape(0)); }
 
-    /// Returns a number. Throws ValueError if it is not finite or below `least`.
-    double number(std::size_t row, std::size_t column = 0, double least = lowest) const {
+    /// Returns a number. Throws ValueError if it is not finite, below `least` or above `most`.
+    double number(std::size_t row, std::size_t column = 0, double least = lowest, double most = -lowest) const {
       const double value = array_.data()[row * columns() + column];
-      if (std::isfinite(value) && value >= least) return value;
+      if (std::isfinite(value) && value >= least && value <= most) return value;
       fail(row, to_text(value) + "; expected " +
                     (least == lowest       ? "a finite number"
+                     : most < -lowest      ? to_text(least) + " to " + to_text(most)
                      : least == above_zero ? "a finite number above 0"
                                            : "a finite number of at least " + to_text(least)));
     }
@@ -75,14 +76,14 @@ class BodyReader {
     const py::object table = object_.attr("materials");
     const Shape rows{static_cast<py::ssize_t>(py::len(table))};
     body_.materials.resize(py::len(table));
-    const auto read = [&](const char* name, double Material::*parameter, double least) {
+    const auto read = [&](const char* name, double Material::*parameter, double least, double most = -lowest) {
       const py::str key(name);
       const Attribute column(table[key], place_ + ".materials." + name, rows);
       for (std::size_t i = 0; i < body_.materials.size(); ++i)
-        body_.materials[i].*parameter = column.number(i, 0, least);
+        body_.materials[i].*parameter = column.number(i, 0, least, most);
     };
     read("stiffness", &Material::stiffness, 0);
-    read("amplitude", &Material::amplitude, 0);
+    read("amplitude", &Material::amplitude, 0, largest_amplitude);
     read("frequency", &Material::frequency, 0);
     read("phase", &Material::phase, lowest);
     read("damping", &Material::damping, 0);
@@ -100,6 +101,9 @@ class BodyReader {
       mass.mass = masses.number(i, 0, 0);
       mass.material = static_cast<std::int32_t>(materials.index(i, 0, body_.materials.size(), no_material));
     }
+    if (std::ranges::none_of(body_.masses, [](const Mass& mass) { return mass.mass > 0; }))
+      throw py::value_error(place_ +
+                            ".masses: all are 0 kg, and a mass of 0 kg is held in place; give one of them a mass");
   }
 
   void read_springs() {

@@ -106,8 +106,8 @@ PYBIND11_MODULE(core, module) {
   define_experiment(module);
   define_result(module);
   module.def("simulate", &simulate, "bodies"_a, "seconds"_a, py::kw_only(), "scene"_a = py::dict(),
-             "simulation"_a = py::dict(), "record"_a = std::vector<std::string>{}, "sample_hz"_a = 0.0,
-             "sampled"_a = std::vector<std::string>{"centre", "positions"},
+             "simulation"_a = py::dict(), "cycle_time"_a = 1.0, "record"_a = std::vector<std::string>{},
+             "sample_hz"_a = 0.0, "sampled"_a = std::vector<std::string>{"centre", "positions"},
              R"(Simulates bodies in one batch, and returns a SimulationResult for each.
 
 bodies      a sequence of evodevo.Body. Results do not depend on what else is in the batch.
@@ -115,6 +115,7 @@ seconds     the simulated time, s
 scene       the table [scene] of an experiment as a dictionary; a force that it does not have is not computed:
             {"gravity": {}, "floor": {"stiffness": 1e5}}
 simulation  the table [simulation], which has the method, the precision, dt, the device and the number of threads
+cycle_time  the key of that name in the table [development], s: a whole number of the steps of each body if dt is "auto"
 record      names of quantities of springs: "stress" (mean absolute force, N), "peak_force" (largest absolute force, N),
             "tension" (mean force, N, positive if the spring pulled), "muscle_work" (energy that it gave the body, J)
 sample_hz   the number of samples for each second, Hz; 0 for none. The first is at the beginning, and each is at the

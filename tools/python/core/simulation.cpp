@@ -16,7 +16,8 @@
 namespace evodevo::python {
 namespace {
 
-constexpr double longest = 1e6;  ///< simulated time, s
+constexpr double longest = 1e6;           ///< simulated time, s
+constexpr double shortest_cycle = 0.001;  ///< s
 
 /// A word of Python, and what it stands for.
 template <class T>
@@ -118,7 +119,7 @@ class Batch {
 
   const std::vector<Life>& lives() const { return lives_; }
   Pace pace(const Order& order, const Life& life) const {
-    return pace_over(order.seconds, experiment_.step, life.living.longest_dt);
+    return pace_of(order.seconds, experiment_.step, life.living.longest_dt);
   }
 
  private:
@@ -203,10 +204,15 @@ SimulationResult result_of(const Life& life, const Order& order, const Batch& ba
 }  // namespace
 
 std::vector<SimulationResult> simulate(const py::sequence& bodies, double seconds, const py::dict& scene,
-                                       const py::dict& simulation, const std::vector<std::string>& record,
-                                       double sample_hz, const std::vector<std::string>& sampled) {
+                                       const py::dict& simulation, double cycle_time,
+                                       const std::vector<std::string>& record, double sample_hz,
+                                       const std::vector<std::string>& sampled) {
   const Order order = order_of(seconds, record, sample_hz, sampled);
+  if (!(cycle_time >= shortest_cycle && cycle_time <= longest))
+    throw py::value_error("cycle_time: " + to_text(cycle_time) + "; expected " + to_text(shortest_cycle) + " to " +
+                          to_text(longest) + " s");
   Experiment experiment = experiment_with(scene, simulation);
+  experiment.step.unit = cycle_time;
   std::vector<GivenBody> given;
   for (const py::handle body : bodies) given.push_back(body_from(body, "bodies[" + std::to_string(given.size()) + "]"));
   std::unique_ptr<Batch> batch;

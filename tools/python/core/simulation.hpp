@@ -20,7 +20,8 @@ struct SimulationResult {
 
 /// Simulates bodies for some seconds. module.cpp describes the arguments.
 std::vector<SimulationResult> simulate(const py::sequence& bodies, double seconds, const py::dict& scene,
-                                       const py::dict& simulation, const std::vector<std::string>& record,
-                                       double sample_hz, const std::vector<std::string>& sampled);
+                                       const py::dict& simulation, double cycle_time,
+                                       const std::vector<std::string>& record, double sample_hz,
+                                       const std::vector<std::string>& sampled);
 
 }  // namespace evodevo::python

@@ -57,6 +57,7 @@ def simulate(
     *,
     scene: dict[str, Any] = {},
     simulation: dict[str, Any] = {},
+    cycle_time: float = 1.0,
     record: Sequence[str] = [],
     sample_hz: float = 0.0,
     sampled: Sequence[str] = ["centre", "positions"],
