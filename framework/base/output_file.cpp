@@ -29,12 +29,17 @@ bool stays_in_place(const fs::path& file) {
   return path.starts_with("/dev/") || path.starts_with("/proc/");
 }
 
+}  // namespace
+
 /// A temporary file that signal handlers see.
 struct Unfinished {
   std::atomic<int> state{0};  ///< 0: free, 1: being noted or forgotten, 2: there
   pid_t owner = 0;            ///< a child process that ends leaves it alone
   std::array<char, 4096> beside, target;
 };
+
+namespace {
+
 std::array<Unfinished, 16> unfinished;
 static_assert(std::atomic<int>::is_always_lock_free, "signal handlers use it");
 
@@ -44,30 +49,23 @@ void end_by(int signal) {
   std::raise(signal);
 }
 
-void note_unfinished(const std::string& beside, const std::string& target) {
+/// Notes a temporary file, and returns where, or nowhere if there is no room.
+Unfinished* noted_unfinished(const std::string& beside, const std::string& target) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    struct sigaction now {};
+    if (sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_DFL) std::signal(signal, end_by);
+  }
   for (Unfinished& one : unfinished) {
-    if (std::max(beside.size(), target.size()) + 1 > one.beside.size()) return;
+    if (std::max(beside.size(), target.size()) + 1 > one.beside.size()) break;
     int free = 0;
     if (!one.state.compare_exchange_strong(free, 1)) continue;
     one.owner = getpid();
     std::memcpy(one.beside.data(), beside.c_str(), beside.size() + 1);
     std::memcpy(one.target.data(), target.c_str(), target.size() + 1);
     one.state = 2;
-    break;
+    return &one;
   }
-  for (const int signal : {SIGINT, SIGTERM}) {
-    struct sigaction now {};
-    if (sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_DFL) std::signal(signal, end_by);
-  }
-}
-
-void forget_unfinished(const std::string& beside) {
-  for (Unfinished& one : unfinished) {
-    int there = 2;
-    if (beside != one.beside.data() || !one.state.compare_exchange_strong(there, 1)) continue;
-    one.beside[0] = '\0';
-    one.state = 0;
-  }
+  return nullptr;
 }
 
 [[noreturn]] void cannot_be_written(const std::string& title, int error) {
@@ -88,9 +86,9 @@ OutputFile::~OutputFile() {
   if (!beside_.empty()) remove_beside();
 }
 
-void OutputFile::remove_beside() const {
+void OutputFile::remove_beside() {
   unlink(beside_.c_str());
-  forget_unfinished(beside_.string());
+  if (noted_ != nullptr) std::exchange(noted_, nullptr)->state = 0;
 }
 
 void OutputFile::open_beside(const fs::path& file) {
@@ -99,9 +97,13 @@ void OutputFile::open_beside(const fs::path& file) {
   if (is_there && access(file.c_str(), W_OK) != 0) fail(errno);
   if (is_there) target_ = fs::canonical(file);
   beside_ = target_.string() + ".unfinished-" + std::to_string(getpid());
+  noted_ =
+      noted_unfinished(beside_.string(), printable(target_.string(), 4000));  // first, so that none escapes a signal
   stream_ = std::fopen(beside_.c_str(), "we");
-  if (stream_ == nullptr) return beside_.clear();
-  note_unfinished(beside_.string(), printable(target_.string(), 4000));
+  if (stream_ == nullptr) {
+    remove_beside();
+    return beside_.clear();
+  }
   if (is_there)
     fs::permissions(beside_, fs::status(target_).permissions(), error);  // permissions of the old file, if allowed
 }

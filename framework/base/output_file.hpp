@@ -8,12 +8,14 @@
 
 namespace evodevo {
 
+struct Unfinished;
+
 /// A file that is written completely or not at all. The text is written to the temporary file NAME.unfinished-PID in
 /// the same folder, and finish() renames this file. Thus an incomplete text is never mistaken for a complete one, and
 /// an earlier file of this name survives if writing fails. Pipes, devices, paths under /dev or /proc, and files in
-/// folders where no file can be created are written in place. Symbolic links are followed. If SIGINT or SIGTERM ends the
-/// process meanwhile, the temporary file is removed and a message says so. Every function throws a std::runtime_error
-/// that names `title` and the cause if the file cannot be written.
+/// folders where no file can be created are written in place. Symbolic links are followed. If a signal ends the process
+/// meanwhile, the temporary file is removed and a message says so. Every function throws a std::runtime_error that
+/// names `title` and the cause if the file cannot be written.
 class OutputFile {
  public:
   /// `title` is the name of the file in messages, such as "--out page.html".
@@ -28,12 +30,13 @@ class OutputFile {
 
  private:
   void open_beside(const std::filesystem::path& file);
-  void remove_beside() const;
+  void remove_beside();
   [[noreturn]] void fail(int error) const;
 
   std::string title_;
   std::filesystem::path target_, beside_;  ///< `beside_`: temporary file; empty if the target is written in place
   std::FILE* stream_ = nullptr;
+  Unfinished* noted_ = nullptr;  ///< where signal handlers find the temporary file
 };
 
 /// Removes the temporary files of this process and says for each that its file is not written. Signal handlers that end

@@ -1,4 +1,6 @@
 // evodevo report, film and gallery: show robots on a page, in a film or in a picture.
+#include <dlfcn.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +12,7 @@
 #include "commands/shell/options.hpp"
 #include "commands/shell/output/notices.hpp"
 #include "evolution/islands/island_folders.hpp"
+#include "operators/loader.hpp"
 #include "report/camera.hpp"
 #include "report/page.hpp"
 #include "report/report.hpp"
@@ -71,6 +74,17 @@ std::string generations_of(const std::vector<std::string>& folders) {
   return counts.dump();
 }
 
+/// Loads the library of the server, which stays loaded.
+auto loaded_server() {
+  const fs::path file = builtin_plugin_folder().parent_path() / "libevodevo-serve.so";
+  void* const library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* const function = library != nullptr ? dlsym(library, "evodevo_serve_locally") : nullptr;
+  if (function == nullptr)
+    throw std::runtime_error(std::string("--serve: ") + dlerror() +
+                             "; build the target evodevo-serve and install evodevo again, or write a file with --out");
+  return reinterpret_cast<decltype(&evodevo_serve_locally)>(function);
+}
+
 /// Serves the page of runs. The page is made anew if a run has grown since.
 int serve_report(const std::vector<std::string>& folders, const Given& given) {
   const auto port = given["serve"].as<std::int64_t>();
@@ -91,9 +105,15 @@ int serve_report(const std::vector<std::string>& folders, const Given& given) {
     return Document{"text/html; charset=utf-8", page};
   };
   document(place_of_page);  // so that an error in a run ends the command at once
-  serve_locally(
-      static_cast<std::uint16_t>(port), [](const std::string& address) { std::cout << address << std::endl; },
-      document);
+  const auto serve = loaded_server();
+  try {
+    serve(
+        static_cast<std::uint16_t>(port), [](const std::string& address) { std::cout << address << std::endl; },
+        document);
+  } catch (const PortError& error) {
+    throw InputError("--serve " + std::to_string(port) + ": the port cannot be used: " + error.what() +
+                     "; give another one, or 0 for any that is free");
+  }
   return 0;
 }
 

@@ -45,13 +45,13 @@ FirstRobots first_robots(const Experiment& experiment) {
     robots.warnings.push_back(none + "can live: " + failure + "; correct [encoding]");
   else if (with_muscles == 0)
     robots.warnings.push_back(none +
-                              "has a muscle at birth, so that none walks; give the encoding a material whose "
-                              "amplitude and frequency are above 0");
+                              "has a muscle at birth; give the encoding a material whose amplitude and frequency "
+                              "are above 0, unless robots get muscles later");
   if (static_cast<double>(lost) > most_lost * static_cast<double>(masses))
     robots.warnings.push_back("of the first " + std::to_string(count) + " random robots, " +
                               std::to_string(100 * lost / masses) +
-                              " % of the masses are left out, because no springs join them to the largest piece; raise "
-                              "encoding.neighbours, or check the shape");
+                              " % of the masses are left out, because no springs join them to the largest piece; let "
+                              "the encoding join more neighbours, or check the shape");
   return robots;
 }
 

@@ -89,7 +89,8 @@ std::optional<std::string> first_other_file(const FileContents& one, const FileC
 void check_same_experiment(const Archive& archive, const Experiment& recorded, const Experiment& named) {
   const auto refuse = [&](const std::string& what) {
     throw ArchiveError(archive.folder().string() + ": is a run of another experiment: " + printable(what) +
-                       "; give another folder with --out, or continue that run with `" + shell_command({"resume", archive.folder().string()}) + "`");
+                       "; give another folder with --out, or continue that run with `" +
+                       shell_command({"resume", archive.folder().string()}) + "`");
   };
   if (recorded.name != named.name) refuse("it is called " + recorded.name + ", not " + named.name);
   const std::vector<std::string> there = lines_that_matter(recorded), here = lines_that_matter(named);

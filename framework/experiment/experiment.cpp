@@ -37,15 +37,16 @@ Registry registry_of(const PluginsTable& plugins, Warnings& warnings) {
 
 /// Adds warnings of what keeps robots from walking, and genomes from being inherited.
 void warn_of_vain_settings(Experiment& experiment) {
-  const auto check_scene = [&](const Scene& scene, const std::string& table) {
-    if (scene.gravity && scene.gravity->acceleration > 0 && !scene.floor)
-      experiment.warnings.push_back("[" + table +
-                                    ".gravity]: there is no floor, so that robots fall without end; add [" + table +
-                                    ".floor] or remove the gravity");
+  const auto falls = [](const Scene& scene) {
+    return scene.gravity && scene.gravity->acceleration > 0 && !scene.floor;
   };
-  check_scene(experiment.scene, "scene");
+  const std::string without_end =
+      ": there is gravity, but no floor, so that robots fall without end; add a floor or "
+      "remove the gravity";
+  if (falls(experiment.scene)) experiment.warnings.push_back("[scene]" + without_end);
   for (const Scenario& scenario : experiment.scenarios) {
-    if (scenario.scene != experiment.scene) check_scene(scenario.scene, "scenario " + scenario.name);
+    if (falls(scenario.scene) && !falls(experiment.scene))
+      experiment.warnings.push_back("scenario " + scenario.name + without_end);
     if (scenario.repeat > 1 && !(scenario.start_noise > 0) && !(scenario.damage > 0))
       experiment.warnings.push_back(
           "scenario " + scenario.name + ", repeat = " + std::to_string(scenario.repeat) +

@@ -137,7 +137,7 @@ struct Settings {
   double spring_evaluations = 0;    ///< number of spring evaluations after which the run ends early; 0: no limit
   double hours = 0;                 ///< wall-clock time of all generations after which the run ends early; 0: no limit
   std::int64_t population = 50;
-  std::int64_t children = 0;            ///< number of newborns of each generation; 0: as many as `population`
+  std::int64_t children = 0;            ///< see newborns(); 0: as many as `population`
   std::int64_t random_individuals = 1;  ///< number of random individuals that enter each generation
   std::int64_t verify = 1;              ///< number of best individuals to verify when the run ends
   bool verify_front = false;            ///< whether individuals are verified before they enter the front
@@ -160,7 +160,8 @@ struct Settings {
 
   std::vector<Scenario> scenarios;  ///< none: matured robots are measured in the scene alone
 
-  /// The number of individuals that are born in each generation but the last one, which may be smaller.
+  /// The number of individuals that are born in each generation but the first one (Experiment::births()) and the last
+  /// one, which may be smaller.
   std::int64_t newborns() const { return children > 0 ? children : population; }
 
   bool operator==(const Settings&) const = default;

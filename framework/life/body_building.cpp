@@ -261,6 +261,9 @@ void check_blueprint(const Blueprint& blueprint, const EncodingContext& context)
   for (std::size_t i = 0; i < context.materials.size(); ++i)
     require(i < body.materials.size() && body.materials[i] == context.materials[i], "material", i,
             "is not that of the encoding context");
+  for (std::size_t i = context.materials.size(); i < body.materials.size(); ++i)
+    require(body.materials[i].amplitude >= 0 && body.materials[i].amplitude <= largest_amplitude, "material", i,
+            "has an amplitude that is not from 0 to 0.9");
   for (std::size_t i = 0; i < body.masses.size(); ++i) {
     const Mass& mass = body.masses[i];
     require(mass.mass > 0 && std::isfinite(mass.mass), "mass", i, "has a mass that is not finite or not above 0 kg");

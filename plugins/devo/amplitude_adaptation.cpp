@@ -11,7 +11,8 @@ class AmplitudeAdaptation final : public evodevo::Adaptation {
   AmplitudeAdaptation() : Adaptation(1.05, 0.02, 0.3) {}
 
   void parameters(evodevo::Parameters& p) override {
-    declare(p, {0, evodevo::largest_amplitude, "1"}, "Amplitude, relative to the rest length, below which no muscle is weakened.",
+    declare(p, {0, evodevo::largest_amplitude, "1"},
+            "Amplitude, relative to the rest length, below which no muscle is weakened.",
             "Amplitude, relative to the rest length, above which no muscle is strengthened.");
   }
 

@@ -101,7 +101,6 @@ class Cloud final : public evodevo::Encoding {
 
   std::vector<Vec3> filled(const Shape& shape, evodevo::Rng& rng) const {
     const Vec3 half = shape.half;
-    const std::string fault = surface_fault(shape);
     std::vector<Vec3> inside;
     for (std::size_t tries = 1; inside.size() < static_cast<std::size_t>(points_); ++tries) {
       const double x = rng.uniform(-half.x, half.x), y = rng.uniform(-half.y, half.y);
@@ -111,10 +110,12 @@ class Cloud final : public evodevo::Encoding {
         throw std::invalid_argument(file_.path + ": to fill a surface of " + std::to_string(shape.triangles.size()) +
                                     " triangles with " + std::to_string(points_) +
                                     " points takes too long; expected fewer triangles or points");
-      if (tries >= 10'000 && inside.size() < tries / 400)
+      if (tries >= 10'000 && inside.size() < tries / 400) {
+        const std::string fault = surface_fault(shape);
         throw std::invalid_argument(file_.path + ": the surface " +
                                     (fault.empty() ? "encloses less than 0.5 % of its bounding box" : fault) +
                                     "; expected a closed surface whose faces are anticlockwise as seen from outside");
+      }
     }
     return inside;
   }

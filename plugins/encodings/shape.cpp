@@ -139,7 +139,9 @@ std::string surface_fault(const Shape& shape) {
       --edges[{key(to), key(from)}];
     }
   }
-  const auto open = std::ranges::count_if(edges, [](const auto& edge) { return edge.second > 0; });
+  const auto open = std::ranges::count_if(edges, [](const auto& edge) { return edge.second == 1; });
+  if (std::ranges::any_of(edges, [](const auto& edge) { return edge.second > 1; }))
+    return "has neighbouring faces that are anticlockwise as seen from different sides";
   if (open > 0) return "is open: it ends at " + std::to_string(open) + " edges";
   return volume < 0 ? "is inside out: its faces are clockwise as seen from outside" : "";
 }

@@ -2,6 +2,7 @@
 // one point.
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <map>
 #include <stdexcept>
 
@@ -31,6 +32,9 @@ class Triangles {
     std::array<std::int64_t, 3> triangle;
     for (std::size_t i = 0; i < 3; ++i) {
       const auto& [x, y, z] = corners[i];
+      if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z))
+        throw std::invalid_argument("triangle " + std::to_string(shape_.triangles.size() + 1) +
+                                    ": a coordinate is not finite; expected finite numbers");
       const auto [found, is_new] = known_.emplace(corners[i], static_cast<std::int64_t>(shape_.points.size()));
       if (is_new) shape_.points.push_back({x, y, z});
       triangle[i] = found->second;
@@ -46,14 +50,15 @@ class Triangles {
 };
 
 Shape read_binary(std::string_view content) {
+  const std::size_t promised = triangles_in(content), there = (content.size() - head) / triangle_size;
+  if (promised != there)
+    throw std::invalid_argument("its header promises " + std::to_string(promised) + " triangles, and " +
+                                std::to_string(there) + " are there; expected a complete STL file");
   Triangles triangles;
   for (content.remove_prefix(head); content.size() >= triangle_size; content.remove_prefix(triangle_size)) {
     std::array<std::array<double, 3>, 3> corners;
     for (std::size_t i = 0; i < 9; ++i)  // after the normal
       corners[i / 3][i % 3] = number_at(content.substr(12 + i * sizeof(float)));
-    for (const auto& corner : corners)
-      if (!(corner[0] - corner[0] == 0 && corner[1] - corner[1] == 0 && corner[2] - corner[2] == 0))
-        throw std::invalid_argument("a corner of a triangle is not finite; expected finite numbers");
     triangles.add(corners);
   }
   return triangles.take();
@@ -63,6 +68,7 @@ Shape read_text(std::string_view content) {
   Triangles triangles;
   std::array<std::array<double, 3>, 3> corners;
   std::size_t count = 0;
+  bool is_ended = false;
   for (std::size_t number = 1; !content.empty(); ++number) {
     std::string_view line = next_line(content);
     const std::string place = "line " + std::to_string(number) + ": ";
@@ -81,7 +87,9 @@ Shape read_text(std::string_view content) {
       triangles.add(corners);
       count = 0;
     }
+    is_ended |= what == "endsolid";
   }
+  if (!is_ended) throw std::invalid_argument("the file ends without endsolid; expected a complete STL file");
   return triangles.take();
 }
 
@@ -97,7 +105,7 @@ bool is_stl(std::string_view content) {
 Shape read_stl(std::string_view content) {
   const bool is_text = content.find("facet") != std::string_view::npos &&
                        (content.size() < head || (content.size() - head) / triangle_size != triangles_in(content));
-  Shape shape = is_text ? read_text(content) : content.size() < head ? Shape() : read_binary(content);
+  Shape shape = is_text || content.size() < head ? read_text(content) : read_binary(content);
   if (shape.triangles.empty()) throw std::invalid_argument("no triangles; expected an STL file with a surface");
   return shape;
 }

@@ -135,6 +135,9 @@ TEST(BodyBuilding, EachFaultOfABlueprintIsNamed) {
   sound.body.springs = {{0, 1, 0, 1}, {1, 2, 2, 0}};
   sound.body.materials.push_back({500, 0.1, 1, 0});
   EXPECT_EQ(fault_of(sound), "no refusal") << "an encoding may add materials";
+  sound.body.materials.back().amplitude = 0.91;
+  EXPECT_THAT(fault_of(sound), testing::naming("material 2", "amplitude", "0.9"));
+  sound.body.materials.back().amplitude = 0.9;
   const auto fault = [&](const auto& spoil) {
     Blueprint blueprint = sound;
     spoil(blueprint.body);

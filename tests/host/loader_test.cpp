@@ -350,6 +350,9 @@ TEST(Isolation, SaysHowAProcessEndedAndLetsNothingUnwindIntoTheParentsCode) {
   EXPECT_THAT(crash([] { std::exit(0); }), naming("exit code 0"));
   EXPECT_THAT(crash([] { _exit(7); }), naming("exit code 7"));
   EXPECT_EQ(crash([] { std::abort(); }), "Aborted");
+  EXPECT_EQ(crash([] { std::fputs("a\nAssertion 'n < size' failed.\n", stderr), std::abort(); }),
+            "Aborted, after it said: Assertion 'n < size' failed.");
+  EXPECT_THAT(crash([] { std::fputs(std::string(3'000'000, 'e').c_str(), stderr), std::abort(); }), naming("Aborted"));
   EXPECT_THAT(crash([] { throw std::runtime_error("no licence"); }), naming("\"no licence\""));
   EXPECT_THAT(crash([] { throw 7; }), naming("std::exception"));
   EXPECT_NE(crash([] { pthread_exit(nullptr); }), "");

@@ -24,7 +24,12 @@ TEST_F(CloudFile, FromStlFillsTheSameVolume) {
   EXPECT_EQ(places(mesh.ascii_stl()), expected);
   EXPECT_EQ(places(mesh.binary_stl("")), expected);
   EXPECT_EQ(places(mesh.binary_stl("solid")), expected) << "some binary files begin like text";
-  EXPECT_THAT(complaint("solid a\nfacet normal 0 0 1\n"), naming("no triangles", "STL"));
+  EXPECT_THAT(complaint("solid a\nfacet normal 0 0 1\nendsolid\n"), naming("no triangles", "STL"));
+  EXPECT_THAT(complaint(mesh.ascii_stl().substr(0, mesh.ascii_stl().find("endsolid"))),
+              naming("ends without endsolid"));
+  EXPECT_THAT(complaint(mesh.binary_stl("solid").substr(0, 84 + 7 * 50)), naming("promises 12", "7 are there"));
+  EXPECT_THAT(complaint("solid a\n facet\n vertex 0 0 0\n vertex 1 nan 0\n vertex 1 1 0\n endfacet\nendsolid\n"),
+              naming("triangle 1", "not finite"));
   EXPECT_THAT(complaint("solid a\n facet\n vertex 0 0 0\n vertex 1 0 0\n endfacet\n"), naming("line 5", "2 vertices"));
   EXPECT_THAT(complaint("solid a\n facet\n vertex 0 0\n"), naming("line 3", "three coordinates"));
 }

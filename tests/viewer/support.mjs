@@ -75,7 +75,7 @@ export function barrenRun() {
   writeFileSync(file, readFileSync(scratch.file, "utf8").replace("stiffness = 3000", "stiffness = 0"));
   const materials = ["muscle", "muscle2", "tissue", "bone"].map((name) => `materials.${name}.stiffness=0`);
   const soft = materials.flatMap((setting) => ["--set", setting]), run = scratch.path("barren");
-  assert.throws(() => evodevo("run", file, "--out", run, ...soft), (error) => error.status === 1);
+  assert.throws(() => evodevo("run", file, "--out", run, ...soft), (error) => error.status === 3);
   return { run, file, soft };
 }
 

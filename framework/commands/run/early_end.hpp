@@ -8,6 +8,8 @@ namespace evodevo {
 
 /// The exit code of a run that ended early and can be continued.
 inline constexpr int ended_early = 130;
+/// The exit code of a run that is complete, but in which no individual has a fitness.
+inline constexpr int no_fitness = 3;
 
 /// Set once a signal has asked this process to end its run, or a part of the run has failed, so that the rest has to
 /// end.

@@ -77,7 +77,8 @@ std::pair<Archive, Experiment> reopened_island(const fs::path& folder, const Giv
 
 void finish(Islands& islands, Simulator& simulator, const RunOutput& output) {
   verify_best_of_all(islands, simulator,
-                     begin_ending(islands.experiments.front(), output, resume_command_for(islands.folder)));
+                     begin_ending(islands.experiments.front(), output, !best_of_all(islands, 1).empty(),
+                                  resume_command_for(islands.folder)));
   if (!output.page) return;
   std::vector<ShownRun> shown;
   for (std::size_t i = 0; i < islands.archives.size(); ++i)
@@ -158,9 +159,8 @@ int report_outcome(Islands& islands, Simulator& simulator, const IslandsProgress
   const bool has_best = print_best(islands);
   print_speed(static_cast<double>(progress.spring_evaluations()), progress.seconds());
   const bool finished = are_finished(islands);
-  if (finished && !has_best) return 1;
   if (finished || output.ends_by_clock()) finish(islands, simulator, output);
-  if (finished) return 0;
+  if (finished) return has_best ? 0 : no_fitness;
   std::cout << "ended early; to continue: " << resume_command_for(islands.folder) << std::endl;
   return ended_early;
 }

@@ -129,10 +129,11 @@ std::pair<Archive, Experiment> reopened(const fs::path& folder, const Given& giv
   return {std::move(archive), std::move(experiment)};
 }
 
-std::size_t begin_ending(const Experiment& experiment, const RunOutput& output, const std::string& later) {
+std::size_t begin_ending(const Experiment& experiment, const RunOutput& output, bool has_best,
+                         const std::string& later) {
   end_on_signals();
   if (output.limit != nullptr) end_at(output.limit->end());
-  if (experiment.verify == 0) return 0;
+  if (experiment.verify == 0 || !has_best) return 0;
   if (!is_verifiable(experiment)) {
     remarks() << "not verified: " << experiment.objectives.front().name
               << " is measured within the life, which verification does not repeat" << std::endl;
@@ -154,7 +155,9 @@ namespace {
 
 /// Verifies the best of a run, and shows them on a page, as far as the user asks for it.
 void verify_and_show(const Experiment& experiment, Simulator& simulator, Archive& archive, const RunOutput& output) {
-  const std::size_t count = begin_ending(experiment, output, shell_command({"verify", archive.folder().string()}));
+  const bool has_best = !archive.best(1).empty();
+  const std::size_t count =
+      begin_ending(experiment, output, has_best, shell_command({"verify", archive.folder().string()}));
   for (const Verification& verification : verify_best(experiment, simulator, archive, count))
     print(verification, experiment.objectives.front());
   if (!output.page) return;
@@ -194,9 +197,8 @@ int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archiv
     farm->finish();
   }
   const bool finished = is_finished(experiment, archive.generations());
-  if (finished && !has_best) return 1;
   if (finished || output.ends_by_clock()) verify_and_show(experiment, simulator, archive, output);
-  if (finished) return 0;
+  if (finished) return has_best ? 0 : no_fitness;
   std::cout << "ended early; to continue: " << resume_command_for(archive) << std::endl;
   return ended_early;
 }
@@ -240,11 +242,12 @@ int begin(const Ranks& ranks, const std::string& file, std::vector<Experiment> i
 }
 
 /// Says that a run with islands is complete, so that there is nothing to do, and returns the exit code.
-int say_complete(const fs::path& run) {
-  std::cout << run.string()
-            << ": the run is complete on all islands; to look at it: " << shell_command({"show", run.string()})
+int say_complete(const Islands& islands) {
+  const std::string run = islands.folder.string();
+  std::cout << run << ": the run is complete on all islands; to look at it: " << shell_command({"show", run})
             << std::endl;
-  return 0;
+  const bool has_best = std::ranges::any_of(islands.archives, [](const Archive& one) { return !one.best(1).empty(); });
+  return has_best ? 0 : no_fitness;
 }
 
 /// Says that a run is complete, so that there is nothing to do, and returns the exit code.
@@ -257,7 +260,7 @@ int say_complete(const Archive& archive) {
             << shell_command({"run", "EXPERIMENT.toml", "--set",
                               "experiment.start=" + fs::absolute(archive.folder()).lexically_normal().string()})
             << std::endl;
-  return 0;
+  return archive.best(1).empty() ? no_fitness : 0;
 }
 
 /// Whether the run has nothing left to do: neither evolution nor verification.
@@ -279,7 +282,7 @@ int go_on_with_islands(const Ranks& ranks, const fs::path& folder, const Given& 
                        const std::vector<Experiment>* expected) {
   Islands islands = reopened_islands(folder, given, expected);
   Experiment& first = islands.experiments.front();
-  if (are_complete(islands)) return say_complete(folder);
+  if (are_complete(islands)) return say_complete(islands);
   if (ranks.channel()) share_host(first, *ranks.channel(), given.contains("mixed"));
   const auto simulator = opened_simulator(first);
   warn_of_another_device(*simulator, islands.archives.front());

@@ -26,9 +26,10 @@ struct RunOutput {
 };
 
 /// Begins the end of a run, when nothing is evolved any more: from now on, signals and the time limit end the process
-/// at once. Returns the number of best individuals to verify, and announces it; `later` is the command that does it
-/// later.
-std::size_t begin_ending(const Experiment& experiment, const RunOutput& output, const std::string& later);
+/// at once. Returns the number of best individuals to verify, and announces it, if an individual has a fitness; `later`
+/// is the command that does it later.
+std::size_t begin_ending(const Experiment& experiment, const RunOutput& output, bool has_best,
+                         const std::string& later);
 
 /// Makes the run that arguments of the command `run` ask for, without other ranks, and returns the exit code.
 int make_run(const Given& given);

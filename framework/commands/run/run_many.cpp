@@ -134,7 +134,7 @@ int run_many(const Given& given) {
       const int code = made(runs[i]);
       const std::lock_guard lock(mutex);
       std::cout << nlohmann::ordered_json{{"run", i}, {"exit_code", code}}.dump() << std::endl;
-      has_failed |= code != 0;
+      has_failed |= code != 0 && code != no_fitness;
     }
   });
   return stop_requested() ? ended_early : has_failed ? 1 : 0;

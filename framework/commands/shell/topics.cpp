@@ -143,7 +143,8 @@ Topic verification() {
            "A trial has held if the first objective is as good as in the run, better, or worse by at most half of its "
            "absolute value. An individual is an artefact if quarter-step or other-method did not hold. It is passive "
            "if it keeps more than half of its fitness without muscles, or has lost more than half of it after ten more "
-           "seconds. Otherwise it is verified.",
+           "seconds. Otherwise it is verified. If it was born again, the verdict also says in how many of these other "
+           "lives it kept its fitness.",
            "With [experiment] verify_front = true, individuals are also verified before they enter the front of a "
            "generation, in four of the trials: no-muscles and settled, then quarter-step and other-method. The first "
            "trial that shows an artefact or a passive individual decides its status; it loses its fitness, and is not "
@@ -199,6 +200,7 @@ Topic exit_codes() {
                            "The command failed: a simulation or a run failed, output could not be written, or plugins "
                            "do not conform."},
                           {"2", "The command line, an experiment, a body or a run is not valid. Nothing was written."},
+                          {"3", "The run is complete, but no individual has a fitness."},
                           {"130",
                            "The run ended early, because of Ctrl-C, SIGTERM or SIGUSR1, and `evodevo resume` can "
                            "continue it."}},

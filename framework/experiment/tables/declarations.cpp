@@ -150,8 +150,9 @@ void declare(SettingsVisitor& v, Floor& floor) {
 
 void declare(SettingsVisitor& v, Friction& friction) {
   v.real(friction.coefficient, "coefficient", {0, 100}, "Coefficient of Coulomb friction.");
-  v.optional_real(friction.static_coefficient, "static", {0, 100},
-                  "Coefficient of static friction, which holds a mass at rest; at least coefficient, by default the same.");
+  v.optional_real(
+      friction.static_coefficient, "static", {0, 100},
+      "Coefficient of static friction, which holds a mass at rest; at least coefficient, by default the same.");
   v.require(friction.holding() >= friction.coefficient, "static",
             "expected at least the coefficient, " + to_text(friction.coefficient));
 }

@@ -17,8 +17,6 @@
 #include <csignal>
 #include <exception>
 
-#include "base/input_error.hpp"
-
 namespace evodevo {
 namespace {
 
@@ -37,8 +35,7 @@ tcp::acceptor listening_at(asio::io_context& io, std::uint16_t port) {
   try {
     return {io, place};
   } catch (const boost::system::system_error& error) {
-    throw InputError("--serve " + std::to_string(port) + ": the port cannot be used: " + error.code().message() +
-                     "; give another one, or 0 for any that is free");
+    throw PortError(error.code().message());
   }
 }
 
@@ -108,8 +105,8 @@ class Server {
 
 }  // namespace
 
-void serve_locally(std::uint16_t port, const std::function<void(const std::string& address)>& listening,
-                   const Documents& documents) {
+extern "C" __attribute__((visibility("default"))) void evodevo_serve_locally(
+    std::uint16_t port, const std::function<void(const std::string& address)>& listening, const Documents& documents) {
   asio::io_context io;
   Server server(io, port, documents);
   asio::signal_set signals(io, SIGINT, SIGTERM);

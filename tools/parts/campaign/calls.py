@@ -6,6 +6,7 @@ import subprocess
 
 # Open MPI refuses to work for root, or to start more processes than cores, unless it is told
 AS_ROOT = ("env", "OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1")
+NO_FITNESS = 3  # exit code of a complete run in which no individual has a fitness
 RANKS = (*AS_ROOT, "mpirun", "--oversubscribe", "--bind-to", "none", "-n")
 
 
@@ -50,6 +51,6 @@ class Program:
 
 
 def require(done, what):
-    if done.returncode != 0:
+    if done.returncode not in (0, NO_FITNESS):
         last = " / ".join((done.stderr or done.stdout).strip().splitlines()[-2:])
         raise Broken(f"{what}: exit code {done.returncode}: {last}")

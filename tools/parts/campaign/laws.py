@@ -13,7 +13,7 @@ import threading
 import tomllib
 
 from .amounts import CONTROLS, are_changed_alike, first_robots, keeps_amounts
-from .calls import RANKS, Broken, Program, obstacle_to_ranks, require
+from .calls import NO_FITNESS, RANKS, Broken, Program, obstacle_to_ranks, require
 from .rounding import moves_as_in_double
 from .run_page import Page
 
@@ -154,7 +154,7 @@ class Laws:
             end.cancel()
         if run.returncode == -signal.SIGKILL:
             raise Broken(f"{words[0]}, interrupted: not done after {seconds} s")
-        if run.returncode not in (0, STOPPED):
+        if run.returncode not in (0, NO_FITNESS, STOPPED):
             raise Broken(f"{words[0]}, interrupted: exit code {run.returncode}")
         return run.returncode == STOPPED
 

@@ -10,6 +10,7 @@ import tempfile
 import threading
 import time
 
+from .calls import NO_FITNESS
 from .laws import STOPPED
 from .outcomes import Outcome
 
@@ -125,7 +126,7 @@ class Soak:
                 run.wait()
             said.seek(0)
             end = " / ".join(said.read().strip().splitlines()[-2:])
-        fault = None if code in (0, STOPPED) else f"exit code {code}: {end}"
+        fault = None if code in (0, NO_FITNESS, STOPPED) else f"exit code {code}: {end}"
         return samples[:-1], generations, fault  # the last sample may be of a process that was already giving back
 
     def _command(self):

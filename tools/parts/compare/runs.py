@@ -18,6 +18,7 @@ from common.command_line import Failure
 from . import rows
 from .together import run_many, stop
 
+NO_FITNESS = 3  # exit status of a complete run in which no individual has a fitness
 STOPPED = 130  # exit status of a run that was asked to stop; it has finished its generation and can be resumed
 
 NO_ISLANDS = "runs with islands, which are several runs each, are not compared; leave the islands out"
@@ -337,7 +338,7 @@ class Runs:
 
     @staticmethod
     def _require_success(run, code):
-        if code != 0:
+        if code not in (0, NO_FITNESS):
             last = "\n  ".join(run.log.read_text().splitlines()[-3:]) if run.log.exists() else "it had not begun"
             # a run counts as stopped if a signal ended it or it was asked to stop; otherwise it failed
             stopped = code < 0 or code == STOPPED

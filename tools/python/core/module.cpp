@@ -111,7 +111,7 @@ PYBIND11_MODULE(core, module) {
              R"(Simulates bodies in one batch, and returns a SimulationResult for each.
 
 bodies      a sequence of evodevo.Body. Results do not depend on what else is in the batch.
-seconds     the simulated time, s
+seconds     the simulated time, s; rounded to the nearest time step
 scene       the table [scene] of an experiment as a dictionary; a force that it does not have is not computed:
             {"gravity": {}, "floor": {"stiffness": 1e5}}
 simulation  the table [simulation], which has the method, the precision, dt, the device and the number of threads

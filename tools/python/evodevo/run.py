@@ -3,6 +3,7 @@
 import functools
 import json
 import pathlib
+import shlex
 import sqlite3
 import tempfile
 import tomllib
@@ -46,7 +47,7 @@ class Run:
         except sqlite3.OperationalError as error:
             # a rollback journal: another process is writing, or was killed while it wrote
             raise ArchiveError(f"{file}: {error}; try again in a moment, or if no process writes to it, let `evodevo show "
-                               f"{folder}` put it in order first") from error
+                               f"{shlex.quote(str(folder))}` put it in order first") from error
         except sqlite3.DatabaseError as error:
             raise ArchiveError(f"{file}: {error}; put back an undamaged copy of it") from error
         found = self.record.get("format")
