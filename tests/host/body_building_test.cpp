@@ -282,8 +282,8 @@ GivenBody awkward_body(bool lives) {
   Awkward number;
   GivenBody given;
   for (int i = 0; i < 3; ++i)
-    given.body.materials.push_back(
-        {number.positive(), std::min(number.positive(), largest_amplitude), number.positive(), number.any()});
+    given.body.materials.push_back({number.positive(), std::min(number.positive(), largest_amplitude),
+                                    number.positive(), number.any(), i == 0 ? 0.25 : number.positive()});
   for (int i = 0; i < 50; ++i) given.body.masses.push_back({number.position(), number.positive(), i % 4 - 1});
   for (std::uint32_t i = 1; i < 50; ++i) given.body.springs.push_back({i - 1, i, number.positive(), i % 3});
   for (std::size_t i = 0; i < 40; ++i) given.body.springs[i].stiffness_factor = number.positive();
