@@ -26,6 +26,11 @@ std::size_t triangles_in(std::string_view content) {
   return count;
 }
 
+/// Whether a file has as many triangles as it would promise as a binary file, which may begin like text.
+bool is_whole_binary(std::string_view content) {
+  return content.size() >= head && content.size() - head == triangles_in(content) * triangle_size;
+}
+
 class Triangles {
  public:
   void add(const std::array<std::array<double, 3>, 3>& corners) {
@@ -95,17 +100,12 @@ Shape read_text(std::string_view content) {
 
 }  // namespace
 
-bool is_stl(std::string_view content) {
-  if (content.size() >= head && (content.size() - head) % triangle_size == 0 &&
-      (content.size() - head) / triangle_size == triangles_in(content))
-    return true;
-  return next_word(content) == "solid";
-}
+bool is_stl(std::string_view content) { return is_whole_binary(content) || next_word(content) == "solid"; }
 
 Shape read_stl(std::string_view content) {
-  const bool is_text = content.find("facet") != std::string_view::npos &&
-                       (content.size() < head || (content.size() - head) / triangle_size != triangles_in(content));
-  Shape shape = is_text || content.size() < head ? read_text(content) : read_binary(content);
+  const bool is_text =
+      content.size() < head || (!is_whole_binary(content) && content.find("facet") != std::string_view::npos);
+  Shape shape = is_text ? read_text(content) : read_binary(content);
   if (shape.triangles.empty()) throw std::invalid_argument("no triangles; expected an STL file with a surface");
   return shape;
 }

@@ -17,14 +17,12 @@ void check_migration(const TomlReader& t, const IslandSettings& islands, const S
     return t.report("topology",
                     "a torus has rows and columns, and " + std::to_string(islands.count) +
                         " islands make one row only; choose a count that is no prime number, or the topology \"ring\"");
-  // a single newborn is no random individual, unless the experiment asks for it
-  const std::int64_t random = settings.newborns() == 1 ? 0 : settings.random_individuals;
-  const std::int64_t sources = most_sources(islands), places = settings.newborns() - random;
+  const std::int64_t sources = most_sources(islands), places = settings.newborns() - settings.random_individuals;
   if (sources * islands.migrants > places)
     t.report("migrants",
              "up to " + std::to_string(sources * islands.migrants) + " immigrants (from " + std::to_string(sources) +
                  (sources == 1 ? " island" : " islands") + ") would be born in one generation, whose newborns are " +
-                 std::to_string(settings.newborns()) + ", of which " + std::to_string(random) +
+                 std::to_string(settings.newborns()) + ", of which " + std::to_string(settings.random_individuals) +
                  " are random individuals; expected at most " + std::to_string(places) +
                  "; lower this key, raise population or children in [experiment], or choose another topology",
              {"experiment", "islands.topology", "islands.count"});

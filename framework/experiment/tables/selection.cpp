@@ -137,19 +137,18 @@ class SelectionTables {
   Experiment& out_;
 };
 
-/// Whether the experiment says how many random individuals it wants.
+}  // namespace
+
 bool asks_for_random_individuals(TomlReader& top) {
   const toml::table* table = top.table("experiment");
   return table != nullptr && table->contains("random_individuals");
 }
 
-}  // namespace
-
 void read_selection(TomlReader& top, const OperatorFactory& factory, const References& references,
                     Experiment& experiment, toml::table& record) {
   top.attempt([&] {
     SelectionTables(factory, references, experiment).read(top, record);
-    if (asks_for_random_individuals(top) || !(experiment.makes_children() || experiment.newborns() == 1)) return;
+    if (!experiment.makes_children() || asks_for_random_individuals(top)) return;
     experiment.random_individuals = 0;
     record["experiment"].as_table()->insert_or_assign("random_individuals", 0);
   });

@@ -68,6 +68,9 @@ void read_simulation(TomlReader& top, Settings& settings, Bodies bodies);
 /// Reads [development] without its operators. Takes the reader of that table. To be called after read_simulation().
 void read_development(TomlReader& development, Settings& settings);
 
+/// Whether the experiment says how many random individuals it wants.
+bool asks_for_random_individuals(TomlReader& top);
+
 /// Reports if StepRule::dt is fixed and a duration (s) is not a whole number of such steps.
 void check_duration(const TomlReader& table, std::string_view name, double duration, const StepRule& step);
 
