@@ -33,7 +33,7 @@ bool stays_in_place(const fs::path& file) {
 
 /// A temporary file that signal handlers see.
 struct Unfinished {
-  std::atomic<int> state{0};  ///< 0: free, 1: being noted or forgotten, 2: there
+  std::atomic<int> state{0};  ///< 0: free, 1: being noted, 2: there
   pid_t owner = 0;            ///< a child process that ends leaves it alone
   std::array<char, 4096> beside, target;
 };
