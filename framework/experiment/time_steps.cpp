@@ -12,14 +12,13 @@ constexpr double shortest_dt = 1e-7;  ///< s; with shorter time steps, the simul
 
 LongestStep failed(const std::string& why) { return {0, "unstable dt: " + why}; }
 
-LongestStep longest_fixed_step(const StepRule& rule, const Body& body, std::span<const Vec3> positions,
-                               const Scene& scene, Method method) {
+LongestStep longest_fixed_step(const StepRule& rule, const Body& body, const Scene& scene, Method method) {
   const double dt = *rule.fixed();
   if (rule.run_unstable) return {*rule.dt, ""};
   if (dt > largest_contact_dt(scene, body, method))
     return failed(to_text(dt) + " s is too long for the body's lightest mass on this floor");
   if (dt > largest_muscle_dt(body)) return failed(to_text(dt) + " s is too long for the body's fastest muscles");
-  if (!is_stable(body, positions, scene, method, dt))
+  if (!is_stable(body, scene, method, dt))
     return failed(to_text(dt) + " s is too long for the body's springs" +
                   (method == Method::rk4 && scene.damping ? " and the scene's damping" : ""));
   return {*rule.dt, ""};
@@ -32,11 +31,10 @@ std::optional<double> StepRule::fixed() const {
   return *dt / static_cast<double>(refine);
 }
 
-LongestStep longest_step(const StepRule& rule, const Body& body, std::span<const Vec3> positions, const Scene& scene,
-                         Method method) {
-  if (rule.dt) return longest_fixed_step(rule, body, positions, scene, method);
-  const double dt = safe_dt(body, positions, scene, method);
-  if (!(dt > 0)) return failed("the body is too large, too stiff or too light for a time step to be computed");
+LongestStep longest_step(const StepRule& rule, const Body& body, const Scene& scene, Method method) {
+  if (rule.dt) return longest_fixed_step(rule, body, scene, method);
+  const double dt = safe_dt(body, scene, method);
+  if (!(dt > 0)) return failed("the body is too stiff or too light for a time step to be computed");
   if (dt < shortest_dt)
     return failed("the body would need steps of " + to_text(dt) + " s, less than " + to_text(shortest_dt) + " s");
   return {dt, ""};

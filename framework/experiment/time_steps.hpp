@@ -10,6 +10,8 @@
 
 namespace evodevo {
 
+inline constexpr double shortest_cycle = 0.001;  ///< the shortest cycle of development, s
+
 /// The settings of an experiment for the time step.
 struct StepRule {
   std::optional<double> dt = 0.0005;  ///< time step, s; none: safe_dt() of each body
@@ -40,9 +42,8 @@ struct LongestStep {
   double dt = 0;        ///< s, before the division by StepRule::refine
   std::string failure;  ///< "unstable dt: ..."; empty if the body can be simulated
 };
-/// Returns the time step for a body whose masses are at `positions` (m): `rule.dt` if it is fixed, otherwise safe_dt().
-LongestStep longest_step(const StepRule& rule, const Body& body, std::span<const Vec3> positions, const Scene& scene,
-                         Method method);
+/// Returns the time step for a body, at which it is stable in any shape: `rule.dt` if it is fixed, otherwise safe_dt().
+LongestStep longest_step(const StepRule& rule, const Body& body, const Scene& scene, Method method);
 
 /// Returns the time steps of a body for a duration (s). Their length does not depend on the duration, so that a life
 /// moves alike however it is divided: with a fixed dt, it is that; otherwise `rule.unit` is the smallest whole number

@@ -15,7 +15,7 @@ namespace {
 /// Returns the reason why a body in the middle of its life must not be simulated, or an empty text if it may be
 /// simulated. It must not be simulated if the floor would fling it out, that is, if the elastic energy of the floor
 /// below its masses is larger than the energy that the body can have put into the floor: its total energy plus the
-/// energy of a fall by its own size. A rigid floor lets masses out slowly.
+/// energy of a fall by its own size and its depth. A rigid floor lets masses out slowly.
 std::string throw_by_ground(const LivingBody& living, const Scene& scene) {
   if (!scene.floor || scene.floor->rigid()) return {};
   const std::vector<Vec3>& positions = living.state.position;
@@ -28,12 +28,11 @@ std::string throw_by_ground(const LivingBody& living, const Scene& scene) {
     deepest = std::max(deepest, depth);
     held += scene.floor->stiffness * depth * depth / 2;
   }
-  const double brought = std::max(0.0, total_energy(living.body, living.state, scene)) + weight * size;
+  const double brought = std::max(0.0, total_energy(living.body, living.state, scene)) + weight * (size + deepest);
   if (held <= brought) return {};
   return fmt::format(
       "inside the ground, up to {:.3g} m deep: the floor would throw it out with {:.3g} J, but it can have entered "
-      "with "
-      "only {:.3g} J",
+      "with only {:.3g} J",
       deepest, held, brought);
 }
 

@@ -245,7 +245,7 @@ bool has_extent(std::span<const Vec3> positions) {
 }
 
 void check_blueprint(const Blueprint& blueprint, const EncodingContext& context) {
-  const auto require = [](bool holds, const char* what, std::size_t index, const char* fault) {
+  const auto require = [](bool holds, const char* what, std::size_t index, const auto& fault) {
     if (!holds) throw std::invalid_argument(std::string(what) + " " + std::to_string(index) + " " + fault);
   };
   const auto require_below = [](std::int64_t count, std::int64_t number, const char* what, std::size_t index,
@@ -263,7 +263,7 @@ void check_blueprint(const Blueprint& blueprint, const EncodingContext& context)
             "is not that of the encoding context");
   for (std::size_t i = context.materials.size(); i < body.materials.size(); ++i)
     require(body.materials[i].amplitude >= 0 && body.materials[i].amplitude <= largest_amplitude, "material", i,
-            "has an amplitude that is not from 0 to 0.9");
+            "has an amplitude that is not from 0 to " + to_text(largest_amplitude));
   for (std::size_t i = 0; i < body.masses.size(); ++i) {
     const Mass& mass = body.masses[i];
     require(mass.mass > 0 && std::isfinite(mass.mass), "mass", i, "has a mass that is not finite or not above 0 kg");

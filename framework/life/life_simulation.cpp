@@ -66,8 +66,7 @@ void keep_samples(Task& task, const Stretch& stretch, Life& life) {
 
 void LifeSimulation::choose_step(Life& life) const {
   LivingBody& living = life.living;
-  LongestStep longest =
-      longest_step(conditions_.step, living.body, living.state.position, *life.scene, conditions_.method);
+  LongestStep longest = longest_step(conditions_.step, living.body, *life.scene, conditions_.method);
   if (!longest.failure.empty()) return life.end(Status::invalid, std::move(longest.failure));
   living.longest_dt = longest.dt;
 }

@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
-
-#include "analysis/stiffness_bounds.hpp"
 
 namespace evodevo {
 namespace {
@@ -20,26 +19,66 @@ bool is_damped(const Body& body) {
                      [&](const Spring& spring) { return body.materials[spring.material].damping != 0; });
 }
 
+/// Whether every spring is damped enough for the longest steps.
+bool is_damped_everywhere(const Body& body) {
+  return std::ranges::all_of(body.springs, [&](const Spring& spring) {
+    const Material& material = body.materials[spring.material];
+    return material.damping >= least_damping || material.stiffness == 0;
+  });
+}
+
+/// What springs resist with: their stiffness, the coefficient of their dashpot, or a sum of both.
+struct Resistance {
+  double of_length = 1;  ///< factor of the stiffness k, N/m
+  double of_rate = 0;    ///< factor of the dashpot's coefficient c, N s/m
+
+  double operator()(const Body& body, const Spring& spring) const {
+    return of_length * body.stiffness(spring) + (of_rate != 0 ? of_rate * body.damping(spring) : 0);
+  }
+};
+
+/// An upper bound of the largest eigenvalue of the mass-weighted stiffness matrix of a body in any shape, by Gershgorin
+/// discs on blocks of one mass: the largest (2 sum(k) + held)/m, 1/s^2. `held` (N/m) resists the motion of each mass.
+/// NaN if one of them is.
+double disc_bound(const Body& body, Resistance resistance, double held) {
+  std::vector<double> sum(body.masses.size(), held);
+  for (const Spring& spring : body.springs) {
+    const double k = resistance(body, spring);
+    sum[spring.a] += 2 * k;
+    sum[spring.b] += 2 * k;
+  }
+  double largest = 0;
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    const double disc = body.masses[i].mass > 0 ? sum[i] / body.masses[i].mass : 0;
+    if (disc > largest || std::isnan(disc)) largest = disc;
+  }
+  return largest;
+}
+
 /// The mass-weighted matrix A = M^-1/2 K M^-1/2 of a body; K is the sum of k e e^T over the springs, with k the
 /// resistance and e the direction of a spring. If k is the stiffness, the eigenvalues are the squares of the body's
 /// angular frequencies, 1/s^2. The resistance can be changed, since directions take longest to compute.
+///
+/// A direction has D components: 3 in space, or 1, which is 1, for springs that resist in every direction alike. Then
+/// the matrix of each axis is the same, and this is that of one axis.
+template <int D>
 class StiffnessMatrix {
  public:
-  StiffnessMatrix(const Body& body, std::span<const Vec3> positions)
-      : size_(3 * static_cast<Eigen::Index>(body.masses.size())) {
+  using Direction = Eigen::Vector<double, D>;
+
+  explicit StiffnessMatrix(const Body& body)
+      : size_(D * static_cast<Eigen::Index>(body.masses.size())), damped_(is_damped(body)) {
     for (const Mass& mass : body.masses) weight_.push_back(mass.mass > 0 ? 1 / std::sqrt(mass.mass) : 0);
-    const bool damped = is_damped(body);
-    for (const Spring& spring : body.springs) {
-      const Vec3 d = positions[spring.b] - positions[spring.a];
-      const double length = norm(d);
-      if (length != 0) {
-        add(body, spring, {d.x / length, d.y / length, d.z / length}, damped);
-        continue;
-      }
-      // a spring without a direction is treated as resisting in every direction: an upper bound for any direction
-      for (int axis = 0; axis < 3; ++axis) add(body, spring, Eigen::Vector3d::Unit(axis), damped);
-    }
   }
+
+  void add(const Body& body, const Spring& spring, const Direction& direction) {
+    links_.push_back({D * spring.a, D * spring.b, direction});
+    stiffness_.push_back(body.stiffness(spring));
+    damping_.push_back(damped_ ? body.damping(spring) : 0);
+  }
+
+  /// Lets every mass be held by a spring of this stiffness (N/m) in every direction.
+  void hold(double stiffness) { held_ = stiffness; }
 
   Eigen::Index size() const { return size_; }
 
@@ -47,19 +86,20 @@ class StiffnessMatrix {
     resistance_.resize(links_.size());
     for (std::size_t i = 0; i < links_.size(); ++i)
       resistance_[i] = resistance.of_length * stiffness_[i] + resistance.of_rate * damping_[i];
+    hold_ = resistance.of_length * held_;
     return *this;
   }
 
   /// A v
   Eigen::VectorXd times(const Eigen::VectorXd& v) const {
     const Eigen::VectorXd weighted = with_weights(v);
-    Eigen::VectorXd forces = Eigen::VectorXd::Zero(size_);
+    Eigen::VectorXd forces = hold_ * weighted;
     for (std::size_t i = 0; i < links_.size(); ++i) {
       const Link& link = links_[i];
-      const Eigen::Vector3d difference = weighted.segment<3>(link.b) - weighted.segment<3>(link.a);
-      const Eigen::Vector3d force = resistance_[i] * link.direction.dot(difference) * link.direction;
-      forces.segment<3>(link.a) -= force;
-      forces.segment<3>(link.b) += force;
+      const Direction difference = weighted.segment<D>(link.b) - weighted.segment<D>(link.a);
+      const Direction force = resistance_[i] * link.direction.dot(difference) * link.direction;
+      forces.segment<D>(link.a) -= force;
+      forces.segment<D>(link.b) += force;
     }
     return with_weights(forces);
   }
@@ -67,29 +107,50 @@ class StiffnessMatrix {
  private:
   struct Link {
     std::uint32_t a, b;  ///< index of the first coordinate of the masses
-    Eigen::Vector3d direction;
+    Direction direction;
   };
-
-  void add(const Body& body, const Spring& spring, const Eigen::Vector3d& direction, bool damped) {
-    links_.push_back({3 * spring.a, 3 * spring.b, direction});
-    stiffness_.push_back(body.stiffness(spring));
-    damping_.push_back(damped ? body.damping(spring) : 0);
-  }
 
   Eigen::VectorXd with_weights(const Eigen::VectorXd& v) const {
     Eigen::VectorXd result(size_);
     for (std::size_t i = 0; i < weight_.size(); ++i) {
-      const auto at = 3 * static_cast<Eigen::Index>(i);
-      result.segment<3>(at) = weight_[i] * v.segment<3>(at);
+      const auto at = D * static_cast<Eigen::Index>(i);
+      result.segment<D>(at) = weight_[i] * v.segment<D>(at);
     }
     return result;
   }
 
   Eigen::Index size_;
+  bool damped_;
   std::vector<double> weight_;  ///< of each mass, 1/sqrt(kg); 0 for a fixed mass
   std::vector<Link> links_;
   std::vector<double> stiffness_, damping_, resistance_;  ///< of each link; N/m, N s/m, N/m
+  double held_ = 0, hold_ = 0;                            ///< N/m
 };
+
+/// The matrix of a body in the shape that `positions` (m) give it. A spring without a direction is treated as resisting
+/// in every direction: an upper bound for any direction.
+StiffnessMatrix<3> matrix_in_shape(const Body& body, std::span<const Vec3> positions) {
+  StiffnessMatrix<3> matrix(body);
+  for (const Spring& spring : body.springs) {
+    const Vec3 d = positions[spring.b] - positions[spring.a];
+    const double length = norm(d);
+    if (length != 0)
+      matrix.add(body, spring, {d.x / length, d.y / length, d.z / length});
+    else
+      for (int axis = 0; axis < 3; ++axis) matrix.add(body, spring, Eigen::Vector3d::Unit(axis));
+  }
+  return matrix;
+}
+
+/// An upper bound of the matrices of a body in all shapes, with springs under any tension: a spring of stiffness k and
+/// length L resists by k along its direction, and by k (1 - L/|d|) < k across. All masses touch a floor of the
+/// stiffness `floor` (N/m).
+StiffnessMatrix<1> matrix_in_any_shape(const Body& body, double floor) {
+  StiffnessMatrix<1> matrix(body);
+  for (const Spring& spring : body.springs) matrix.add(body, spring, StiffnessMatrix<1>::Direction::Ones());
+  matrix.hold(floor);
+  return matrix;
+}
 
 /// A unit vector to start an iteration from: always the same, and not an eigenvector of any regular body.
 Eigen::VectorXd scattered(Eigen::Index size) {
@@ -129,7 +190,8 @@ struct Eigenpair {
 /// `enough`, some number between `enough` and the eigenvalue. The estimates rise towards the eigenvalue. The iteration
 /// ends when the residual is below 1 % of the estimate (after about 15 iterations for a body of a thousand masses) or
 /// after 60 iterations; a margin of 2 %, which is 1 % in frequency, covers the remaining error.
-Eigenpair largest_eigenpair(const StiffnessMatrix& matrix, double enough) {
+template <int D>
+Eigenpair largest_eigenpair(const StiffnessMatrix<D>& matrix, double enough) {
   constexpr int iterations = 60, between_looks = 3;
   constexpr double margin = 1.02, residual = 0.01;
   Tridiagonal small;
@@ -210,18 +272,16 @@ struct Limit {
   }
 };
 
-/// The largest stable dt of a body with dashpots, s.
+/// The largest stable dt of a body with dashpots, s. `dt` is one that is known to be stable, s.
 ///
 /// With f(dt) = dt^2 lambda, a dt is stable if f(dt) <= oscillation^2. Because K and C have no negative eigenvalues,
 /// f(s dt) <= s f(dt) if s < 1, and f(s dt) <= s^2 f(dt) if s > 1. So lambda at any dt leads to a dt that is safe, and
 /// the nearer the first one was to the limit, the nearer is the second. On the other side, the eigenvector x of one dt
 /// is a bound for all: no dt is stable for which dt^2 x^T (K + (rate/dt) C) x is above oscillation^2.
-double largest_damped_dt(const Body& body, std::span<const Vec3> positions, const Limit& limit) {
+template <int D>
+double largest_damped_dt(StiffnessMatrix<D> matrix, const Limit& limit, double dt) {
   constexpr int looks = 10;
   constexpr double near_enough = 0.96;  // with the 1 % of the margin, 5 % below the true limit
-  double dt = limit.dt(StiffnessBounds(body, positions, {1, 0}).of_blocks(),
-                       StiffnessBounds(body, positions, {0, 1}).of_blocks());
-  StiffnessMatrix matrix(body, positions);
   for (int i = 0; i < looks; ++i) {
     const auto [eigenvalue, vector] = largest_eigenpair(matrix.with(limit.at(dt)), infinity);
     const double damping = vector.dot(matrix.with({0, 1}).times(vector));
@@ -231,6 +291,30 @@ double largest_damped_dt(const Body& body, std::span<const Vec3> positions, cons
     if (!(dt < near_enough * most)) break;
   }
   return dt;
+}
+
+/// The largest stable dt (s) of a body with this matrix. `known` is a stable dt (s), which a body with dashpots needs.
+template <int D>
+double largest_dt_of(StiffnessMatrix<D> matrix, const Limit& limit, double known) {
+  if (limit.has_dashpots) return largest_damped_dt(std::move(matrix), limit, known);
+  return limit.oscillation / std::sqrt(largest_eigenpair(matrix.with({}), infinity).value);
+}
+
+/// The smaller one; NaN if one of them is.
+double at_most(double wanted, double largest) { return largest < wanted || std::isnan(largest) ? largest : wanted; }
+
+/// The stiffness (N/m) with which the floor resists the motion of a mass in any direction; 0 if it is rigid.
+double contact_stiffness(const Scene& scene) {
+  if (!scene.floor || scene.floor->rigid()) return 0;
+  // rough ground has horizontal force components too
+  return scene.floor->stiffness * (1 + std::pow(scene.floor->steepest(), 2));
+}
+
+double largest_in_any_shape(const Body& body, const Scene& scene, const Limit& limit, double wanted) {
+  const double floor = contact_stiffness(scene);
+  if (wanted * std::sqrt(disc_bound(body, limit.at(wanted), floor)) <= limit.oscillation) return wanted;
+  const double known = limit.dt(disc_bound(body, {1, 0}, floor), disc_bound(body, {0, 1}, 0));
+  return at_most(wanted, largest_dt_of(matrix_in_any_shape(body, floor), limit, known));
 }
 
 }  // namespace
@@ -251,10 +335,8 @@ double oscillation_limit(Method method) {
 }
 
 double largest_contact_dt(const Scene& scene, double mass, Method method) {
-  if (!is_explicit(method) || !scene.floor || scene.floor->rigid() || scene.floor->stiffness <= 0) return infinity;
-  // rough ground has horizontal force components too
-  const double stiffness = scene.floor->stiffness * (1 + std::pow(scene.floor->steepest(), 2));
-  return 1.2 * std::sqrt(mass / stiffness);
+  const double stiffness = contact_stiffness(scene);
+  return is_explicit(method) && stiffness > 0 ? 1.2 * std::sqrt(mass / stiffness) : infinity;
 }
 
 double largest_contact_dt(const Scene& scene, const Body& body, Method method) {
@@ -280,44 +362,40 @@ double largest_muscle_dt(const Body& body) {
   return frequency > 0 ? 0.5 / frequency : infinity;
 }
 
-double largest_dt(const Body& body, std::span<const Vec3> positions, Method method, double wanted) {
-  if (!is_explicit(method)) return wanted;
-  const bool damped = is_damped(body);
-  const Limit limit(method, damped);
-  const StiffnessBounds bounds(body, positions, limit.at(wanted));
-  if (wanted * std::sqrt(bounds.of_discs()) <= limit.oscillation) return wanted;
-  const double bound = bounds.of_blocks();
-  if (bound == 0 || wanted * std::sqrt(bound) <= limit.oscillation) return wanted;
-  const auto undamped = [&] {
-    StiffnessMatrix matrix(body, positions);
-    return limit.oscillation / std::sqrt(largest_eigenpair(matrix.with({}), infinity).value);
-  };
-  const double largest = damped ? largest_damped_dt(body, positions, limit) : undamped();
-  return largest >= wanted ? wanted : largest;  // NaN stays NaN
+double largest_dt(const Body& body, std::span<const Vec3> positions, Method method) {
+  const Limit limit(method, is_damped(body));
+  const double stiffest = disc_bound(body, {1, 0}, 0);
+  if (!is_explicit(method) || stiffest == 0) return infinity;
+  return largest_dt_of(matrix_in_shape(body, positions), limit, limit.dt(stiffest, disc_bound(body, {0, 1}, 0)));
 }
 
-double safe_dt(const Body& body, std::span<const Vec3> positions, const Scene& scene, Method method) {
+double largest_dt_in_any_shape(const Body& body, const Scene& scene, Method method, double wanted) {
+  return largest_in_any_shape(body, scene, Limit(method, is_damped(body)), wanted);
+}
+
+double safe_dt(const Body& body, const Scene& scene, Method method) {
   constexpr double longest = 0.01, steps_of_a_stroke = 20;
-  double other = std::min(longest, largest_contact_dt(scene, body, method));
+  double dt = std::min(longest, largest_contact_dt(scene, body, method));
   if (const double frequency = fastest_muscle(body); frequency > 0)
-    other = std::min(other, 1 / (steps_of_a_stroke * frequency));
+    dt = std::min(dt, 1 / (steps_of_a_stroke * frequency));
   const double rate = uniform_damping(scene, method);
-  if (rate > 0) other = std::min(other, 2 / rate);
-  const double wanted = other / spring_margin;
-  double springs = largest_dt(body, positions, method, wanted);
-  if (rate > 0 && is_damped(body)) springs = 1 / (1 / springs + rate / Limit(method, true).rate);  // the rates add up
-  return springs == wanted ? other : spring_margin * springs;
+  if (rate > 0) dt = std::min(dt, 2 / rate);
+  if (!is_explicit(method)) return dt;
+  const Limit limit(method, is_damped(body));
+  const double margin = method == Method::rk4 || is_damped_everywhere(body) ? spring_margin : undamped_margin;
+  const double wanted = dt / margin;
+  double springs = largest_in_any_shape(body, scene, limit, wanted);
+  if (limit.has_dashpots && rate > 0) springs = 1 / (1 / springs + rate / limit.rate);  // the rates add up
+  return springs == wanted ? dt : margin * springs;
 }
 
-bool is_stable(const Body& body, std::span<const Vec3> positions, const Scene& scene, Method method, double dt) {
+bool is_stable(const Body& body, const Scene& scene, Method method, double dt) {
   if (!is_explicit(method)) return true;
-  const Limit of_method(method, is_damped(body), uniform_damping(scene, method) * dt);
-  const double limit = of_method.eigenvalue(dt);
-  const Resistance resistance = of_method.at(dt);
-  const StiffnessBounds bounds(body, positions, resistance);
-  if (bounds.of_discs() <= limit || bounds.blocks_are_below(limit)) return true;
-  StiffnessMatrix matrix(body, positions);
-  return largest_eigenpair(matrix.with(resistance), limit).value <= limit;
+  const Limit limit(method, is_damped(body), uniform_damping(scene, method) * dt);
+  const double largest = limit.eigenvalue(dt), floor = contact_stiffness(scene);
+  const Resistance resistance = limit.at(dt);
+  return disc_bound(body, resistance, floor) <= largest ||
+         largest_eigenpair(matrix_in_any_shape(body, floor).with(resistance), largest).value <= largest;
 }
 
 }  // namespace evodevo

@@ -109,13 +109,14 @@ HWY_INLINE V push_off(const Ground<V>& ground, V lift, Triple<V>& v) {
   return lift / square_root(squared);
 }
 
-/// Reduces velocities by the friction of a floor that has added `push` (m/s) along its unit normal.
+/// Reduces velocities by the friction of a floor that has added `push` (m/s) along its unit normal, of which forces
+/// have caused `pressed` (after_friction()).
 template <class T, class V>
-HWY_INLINE void rub(const cpu::StepConstants<T>& constants, const Ground<V>& ground, V push, Triple<V>& v) {
+HWY_INLINE void rub(const cpu::StepConstants<T>& constants, const Ground<V>& ground, V push, V pressed, Triple<V>& v) {
   const hn::ScalableTag<T> d;
   if (!constants.friction) return;
   const T at_rest = constants.static_friction ? constants.static_coefficient : 0;
-  v = after_friction(ground, v, push, hn::Set(d, constants.friction_coefficient), hn::Set(d, at_rest));
+  v = after_friction(ground, v, push, pressed, hn::Set(d, constants.friction_coefficient), hn::Set(d, at_rest));
 }
 
 /// Lets a rigid floor and its friction act on the velocities that all other forces have given the masses in a step.
@@ -128,9 +129,10 @@ HWY_INLINE void land(const cpu::Motion<T>& m, const cpu::StepConstants<T>& const
     const Ground<V> ground = ground_under(m, constants, i);
     Triple<V> v{hn::Load(d, m.vx + i), hn::Load(d, m.vy + i), hn::Load(d, m.vz + i)};
     const V rise = along_normal(ground, v), lowest = lowest_rise(hn::Load(d, m.z + i) - ground.height, dt);
-    const V after = rise_after_contact(lowest, bounce(restitution, hn::Load(d, m.arrival + i)));
+    const V arrival = hn::Load(d, m.arrival + i), pressed = press(arrival, rise);
+    const V after = rise_after_contact(lowest, bounce(restitution, arrival, pressed));
     const V push = push_off(ground, lift_of(m, i, rise, lowest, after - rise), v);
-    rub(constants, ground, push, v);
+    rub(constants, ground, push, pressed / square_root(normal_squared(ground)), v);
     hn::Store(push, d, m.push + i);
     hn::Store(v.x, d, m.vx + i);
     hn::Store(v.y, d, m.vy + i);
@@ -139,7 +141,7 @@ HWY_INLINE void land(const cpu::Motion<T>& m, const cpu::StepConstants<T>& const
 }
 
 /// Stops the descent of masses that a rigid floor has pushed in the step, with the friction under the push that this
-/// takes. `v` are velocities of the masses of the vector at index i.
+/// takes. `v` are velocities of the masses of the vector at index i after half a step of the present forces.
 template <class T, class V>
 HWY_INLINE void stay_landed(const cpu::Motion<T>& m, const cpu::StepConstants<T>& constants, std::size_t i,
                             Triple<V>& v) {
@@ -147,7 +149,10 @@ HWY_INLINE void stay_landed(const cpu::Motion<T>& m, const cpu::StepConstants<T>
   const Ground<V> ground = ground_under(m, constants, i);
   const V descent = maximum(hn::Zero(d) - along_normal(ground, v), hn::Zero(d));
   const V lift = zero_unless_greater(hn::Load(d, m.push + i), hn::Zero(d), descent);
-  rub(constants, ground, push_off(ground, lift, v), v);
+  const Triple<V> force{hn::Load(d, m.fx + i), hn::Load(d, m.fy + i), hn::Load(d, m.fz + i)};
+  const V by = hn::Set(d, constants.half_step.dt) * hn::Load(d, m.inverse_mass + i);
+  const V pressed = press(hn::Zero(d), by * along_normal(ground, force)) / square_root(normal_squared(ground));
+  rub(constants, ground, push_off(ground, lift, v), pressed, v);
 }
 
 /// Lets dashpots act at the velocities that masses will have after half a step under the present forces and then half a
@@ -269,7 +274,8 @@ HWY_INLINE void apply_friction_along_ground(const cpu::Motion<T>& m, const cpu::
     const Ground<V> ground = ground_under(m, constants, i);
     const V up = hn::Set(d, time) * hn::Load(d, m.floor_force + i) * hn::Load(d, m.inverse_mass + i);
     Triple<V> v{hn::Load(d, velocity.x + i), hn::Load(d, velocity.y + i), hn::Load(d, velocity.z + i)};
-    rub(constants, ground, up * square_root(normal_squared(ground)), v);
+    const V push = up * square_root(normal_squared(ground));
+    rub(constants, ground, push, push, v);
     hn::Store(v.x, d, velocity.x + i);
     hn::Store(v.y, d, velocity.y + i);
     hn::Store(v.z, d, velocity.z + i);

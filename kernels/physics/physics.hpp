@@ -285,10 +285,18 @@ EVODEVO_HD T lowest_rise(T clearance, T dt) {
   return constant<T>(0) - maximum(clearance / dt, slowest_exit);
 }
 
-/// The rise (m/s) with which a mass bounces off a rigid floor if its rise before is `arrival`; 0 if it does not arrive.
+/// The speed (m/s) that the forces of a step give a mass towards a rigid floor, from its rises before and after them.
 template <class T>
-EVODEVO_HD T bounce(T restitution, T arrival) {
-  return restitution * maximum(constant<T>(0) - arrival, constant<T>(0));
+EVODEVO_HD T press(T before, T after) {
+  return maximum(before - after, constant<T>(0));
+}
+
+/// The rise (m/s) with which a mass bounces off a rigid floor if its rise before is `arrival`; 0 if it does not arrive,
+/// or not faster than the forces of one step would bring it back (`pressed`, press()): it rests then.
+template <class T>
+EVODEVO_HD T bounce(T restitution, T arrival, T pressed) {
+  const T speed = constant<T>(0) - arrival;
+  return zero_unless_greater(speed, pressed, restitution * speed);
 }
 
 /// The rise (m/s) of a mass after its contact with a rigid floor: a mass that arrives bounces, and one that rests or
@@ -348,17 +356,20 @@ EVODEVO_HD T kept_unless_held(T vx, T vy, T held, T kept) {
 }
 
 /// The velocity (m/s) of a mass after the friction of the floor has acted on its part along the ground. `push` is the
-/// velocity that the floor has added along its unit normal, N dt/m (m/s). `static_coefficient` may be 0 if it is not
-/// higher than `coefficient`, since the friction of sliding then stops every mass that it would hold.
+/// velocity that the floor has added along its unit normal, N dt/m (m/s). What `pressed` (m/s) is less than that comes
+/// from an impact, in which a mass slides, so that static friction holds by min(push, pressed) alone.
+/// `static_coefficient` may be 0 if it is not higher than `coefficient`, since the friction of sliding then stops every
+/// mass that it would hold.
 template <class T>
-EVODEVO_HD Triple<T> after_friction(const Ground<T>& ground, const Triple<T>& v, T push, T coefficient,
+EVODEVO_HD Triple<T> after_friction(const Ground<T>& ground, const Triple<T>& v, T push, T pressed, T coefficient,
                                     T static_coefficient) {
   const T up = along_normal(ground, v) / normal_squared(ground);
   const Triple<T> along = add_along_normal(ground, v, constant<T>(0) - up);
   // the ground's slope may give the tangential velocity a third component
   const T across = square_root(multiply_add(along.y, along.y, along.z * along.z));
   const T sliding = friction_factor(along.x, across, coefficient * push);
-  const T lost = constant<T>(1) - kept_unless_held(along.x, across, static_coefficient * push, sliding);
+  const T holding = push - maximum(push - pressed, constant<T>(0));
+  const T lost = constant<T>(1) - kept_unless_held(along.x, across, static_coefficient * holding, sliding);
   // exactly v without contact
   return {negative_multiply_add(lost, along.x, v.x), negative_multiply_add(lost, along.y, v.y),
           negative_multiply_add(lost, along.z, v.z)};

@@ -344,5 +344,19 @@ TEST_P(ClosedForm, RecordingsHoldWhatIsAskedForAlone) {
   }
 }
 
+class FreeBodies : public EachWay {};
+
+INSTANTIATE_TEST_SUITE_P(Methods, FreeBodies, all_ways(), named);
+
+TEST_P(FreeBodies, StayWhereTheyAre) {
+  // for 200 s, in which a body would drift by metres if every step added 1e-7 of its masses' momentum
+  const Body body = random_body(16, 7, 5, 1);
+  const State start = resting(body, {});
+  const double dt = is_explicit(method()) ? 0.001 : 0.01;
+  const Answer a = simulate_ok(body, start, {}, stepping(dt), static_cast<std::uint64_t>(200 / dt));
+  const Vec3 drift = centre_of_mass(body, a.state.position) - centre_of_mass(body, start.position);
+  EXPECT_LT(norm(drift), single() ? 5e-3 : 1e-9) << "m";
+}
+
 }  // namespace
 }  // namespace evodevo::test::EVODEVO_FILE

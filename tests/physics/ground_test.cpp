@@ -77,8 +77,10 @@ TEST(Ground, FrictionThatIsNotHigherAtRestNeedsNoSecondCoefficient) {
     const physics::Ground<float> here{0, number(0.618034, 0.4), number(0.754878, 0.4)};
     const physics::Triple<float> v{number(0.569840, 1), number(0.819173, 1), number(0.471043, 1)};
     const float push = i % 10 == 0 ? 0 : std::abs(number(0.324718, 2));
-    const auto after = [&](float at_rest) { return physics::after_friction(here, v, push, coefficient, at_rest); };
-    const auto same = after(coefficient), none = after(0), higher = after(2 * coefficient);
+    const auto after = [&](float at_rest) {
+      return physics::after_friction(here, v, push, 0.5f * push, coefficient, at_rest);
+    };
+    const auto same = after(coefficient), none = after(0), higher = after(4 * coefficient);
     EXPECT_TRUE(same.x == none.x && same.y == none.y && same.z == none.z) << i;
     held += higher.x != none.x;
   }

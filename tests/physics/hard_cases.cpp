@@ -176,6 +176,60 @@ HardCase on_a_hard_floor(std::string name, double dt, std::uint64_t steps, Outco
   return c;
 }
 
+/// A foot at rest on a rigid floor, which a spring pushes down with 50 N and its dashpot pulls up with 60 N. Their sum
+/// (10 + 2000 t) e^(-100 t) N never pushes down again, so that the body takes off at once, with its whole momentum.
+HardCase pulled_up() {
+  const double m = 0.2, time = 0.05, dt = 0.0005;
+  Body body;
+  body.materials = {{1000, 0, 0, 0, 1}};
+  body.masses = {{{0, 0, 0}, m}, {{0, 0, 0.45}, m}};
+  body.springs = {{0, 1, 0.5, 0}};
+  const Scene scene{Gravity{}, on_rigid_floor(0).floor, {}, {}, {}};
+  State start = resting(body, scene);
+  start.velocity[1].z = 3;
+  HardCase c = from("foot_pulled_up_by_a_dashpot", body, start, scene, dt, static_cast<std::uint64_t>(time / dt));
+  c.check = [body, m, time](const State& end) {
+    EXPECT_NEAR(momentum(body, end).linear.z, 3 * m - 2 * m * g * time, 0.003) << "kg m/s";
+  };
+  return c;
+}
+
+/// A mass that hits a rigid floor while it slides, without gravity. Coulomb's law of impact: the floor's impulse (1 +
+/// e) m v slows the mass down by the coefficient of sliding, however high that of a mass at rest is.
+HardCase sliding_impact(double restitution) {
+  const Scene scene{{}, on_rigid_floor(restitution).floor, Friction{0.3, 0.9}, {}, {}};
+  const Body body = single_mass(0.2, {0, 0, 0.3});
+  const State start = moving(body, scene, {1.2, -1.6, -3});
+  HardCase c = from("sliding_impact", body, start, scene, 0.0005, 400);
+  c.check = [restitution](const State& end) {
+    const double left = (2 - 0.3 * (1 + restitution) * 3) / 2;
+    EXPECT_NEAR(end.velocity[0].x, left * 1.2, 1e-3) << restitution;
+    EXPECT_NEAR(end.velocity[0].y, left * -1.6, 1e-3) << restitution;
+    EXPECT_NEAR(end.velocity[0].z, restitution * 3, 1e-3) << restitution;
+  };
+  return c;
+}
+
+/// A light mass between six short springs along the axes, which muscles stretch to many times their length. At rest,
+/// each spring is stiff in its own direction; stretched, in all directions, which raises the highest frequency by
+/// sqrt(3).
+HardCase stretched_star(Method method) {
+  constexpr double rest = 0.001;  // m
+  Body body;
+  body.materials = {{4000, 0, 0, 0}, {5000, 0.14, 1, pi}};
+  body.masses = {{{}, 0.05}};
+  for (const Vec3& axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
+    for (const double side : {-1.0, 1.0}) {
+      const auto n = static_cast<std::uint32_t>(body.masses.size());
+      body.masses.push_back({side * rest * axis, 0.2});
+      body.masses.push_back({side * (1 + rest) * axis, 5});
+      body.springs.push_back({0, n, rest, 0});
+      body.springs.push_back({n, n + 1, 1, 1});
+    }
+  const double dt = safe_dt(body, {}, is_explicit(method) ? method : Method::paper_euler);
+  return from_birth("stretched_star", body, {}, dt, static_cast<std::uint64_t>(10 / dt));
+}
+
 HardCase fast_muscles(std::string name, double frequency) {
   Body body = random_body(40, 8, 5, 7);
   for (Material& material : body.materials) material.frequency = frequency;
@@ -314,6 +368,11 @@ std::vector<HardCase> hard_cases(Method method) {
       fast_muscles("muscles_of_1999_Hz", 1999),
       fast_muscles("muscles_of_700_Hz", 700),
       fast_muscles("muscles_of_1_MHz", 1e6 + 3),
+      pulled_up(),
+      sliding_impact(0),
+      sliding_impact(0.5),
+      sliding_impact(1),
+      stretched_star(method),
       ten_minutes(),
       pumped_by_the_floor(method),
       not_a_number("velocity_nan", std::numeric_limits<double>::quiet_NaN()),

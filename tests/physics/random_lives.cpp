@@ -47,18 +47,6 @@ State random_start(const Body& body, const Scene& scene, Random& random) {
   return state;
 }
 
-/// The largest dt (s) at which the drag of a step does not reverse a mass that has all of the body's energy.
-/// paper-euler, which takes drag from the beginning of the step, needs it, and safe_dt() does not consider it.
-double largest_drag_dt(const Life& life, const Scene& scene) {
-  double longest = std::numeric_limits<double>::infinity();
-  if (!scene.drag) return longest;
-  for (const Mass& mass : life.body.masses) {
-    const double fastest = std::sqrt(2 * life.start.start_energy / mass.mass);
-    if (mass.mass > 0) longest = std::min(longest, mass.mass / (scene.drag->coefficient * fastest));
-  }
-  return longest;
-}
-
 }  // namespace
 
 Scene random_scene(std::uint64_t seed) {
@@ -85,8 +73,7 @@ std::vector<Life> random_lives(const Scene& scene, std::uint64_t seed, std::size
     life.body = random_small_body(random);
     life.start = random_start(life.body, scene, random);
     const double longest =
-        std::min({safe_dt(life.body, life.start.position, scene, Method::paper_euler),
-                  safe_dt(life.body, life.start.position, scene, Method::rk4), largest_drag_dt(life, scene)});
+        std::min(safe_dt(life.body, scene, Method::paper_euler), safe_dt(life.body, scene, Method::rk4));
     life.dt = random.between(0.02, 0.5) * longest;
   }
   return lives;

@@ -169,8 +169,8 @@ Reference reference(const Body& body, State state, const Scene& scene, double dt
       }
       if (scene.floor && x.z < 0) floor = -scene.floor->stiffness * x.z;
       force[i].z += floor;
-      if (scene.drag) force[i] = force[i] - scene.drag->coefficient * norm(v) * v;
-      v = v + (dt / mass) * force[i];
+      const double kept = scene.drag ? 1 / (1 + dt * scene.drag->coefficient * norm(v) / mass) : 1;
+      v = kept * (v + (dt / mass) * force[i]);
       if (scene.damping) v = std::exp(-scene.damping->rate * dt) * v;
       const double speed = std::hypot(v.x, v.y);
       if (scene.friction && speed > 0) {

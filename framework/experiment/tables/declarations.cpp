@@ -1,6 +1,7 @@
 #include "experiment/tables/declarations.hpp"
 
 #include "base/text.hpp"
+#include "experiment/time_steps.hpp"
 #include "operators/host_keys.hpp"
 
 namespace evodevo {
@@ -79,7 +80,7 @@ void declare_simulation(SettingsVisitor& v, Settings& s) {
 void declare_development(SettingsVisitor& v, Settings& s) {
   DevelopmentSettings& d = s.development;
   v.integer(d.cycles, "cycles", {0, rng_stream::most_cycles}, "Number of cycles of simulation and development.");
-  v.real(d.cycle_time, "cycle_time", {s.step.dt.value_or(0.001), 1e6, "s"}, "Simulated time of one cycle.");
+  v.real(d.cycle_time, "cycle_time", {s.step.dt.value_or(shortest_cycle), 1e6, "s"}, "Simulated time of one cycle.");
   v.flag(d.reset, "reset", "Whether the body returns to its rest positions after every cycle.");
   choice(v, d.control, "control", "Control experiment: what replaces development by the operators; off: nothing does.");
   choice(v, d.probe, "probe",

@@ -23,15 +23,17 @@ namespace evodevo::HWY_NAMESPACE {
 ///   K+  the stiffness matrix without the negative part (spring_stiffness()), so that the matrix of the equation is
 ///       symmetric and positive definite at any dt
 ///   C   the damping matrix of the dashpots: as if the springs were stiffer by c/dt along their direction
-///   R   diagonal: drag (coefficient times |v|) and, for a mass that touches the floor at the end of the step
-///       (z + dt v_z < 0), dt times the floor's stiffness along z, so that the floor's force is k (-z - dt v'_z). On
-///       rough ground the force is along the ground's normal; that part of R is not diagonal (rough_resistance()). A
-///       rigid floor holds the masses that it will push (hold()): their v' has the rise after the contact.
+///   R   diagonal: drag (coefficient times |v|) and, for a mass that touches the floor at the end of the step, dt times
+///       the floor's stiffness along z, so that the floor's force is k (-z - dt v'_z). On rough ground the force is
+///       along the ground's normal; that part of R is not diagonal (rough_resistance()). A rigid floor holds masses in
+///       the same way, so that their v' has the rise after the contact (Contact). Which masses touch is a part of the
+///       solution: after a guess, those are let go that the floor pulls, and those held that enter it, until none
+///       change.
 ///
 /// A step: set_resistance, set_stiffness, set_residual ─► the equation; solve ─► c; add_correction ─► velocities;
 /// rigid floor; friction; advance_positions.
 struct Implicit : ImplicitFloor {
-  static constexpr std::size_t mass_arrays = 21, slot_arrays = 4;
+  static constexpr std::size_t mass_arrays = 22, slot_arrays = 4;
 
   template <class T>
   static void step(const Stepper<T>& s, std::size_t row) {
@@ -186,13 +188,30 @@ struct Implicit : ImplicitFloor {
             damped_dt * multiply_add(dt, sum.z, vertical * own.z)};
   }
 
-  /// Solves the equation for the correction by preconditioned conjugate gradients. <r, P r> measures the residual r,
-  /// with P the preconditioner.
+  /// The contacts are revised at most this many times in a step.
+  static constexpr int most_revisions = 8;
+
+  /// Solves the equation for the correction, by preconditioned conjugate gradients for each guess of the contacts. <r,
+  /// P r> measures the residual r, with P the preconditioner.
   template <class T>
   static void solve(const Stepper<T>& s, const Memory<T>& memory) {
     T left = start(s, memory);
     if (s.constants.rigid) left = start_with_contacts(s, memory);
     const T enough = tolerance<T> * tolerance<T> * left;
+    iterate(s, memory, left, enough);
+    for (int i = 0; i < most_revisions && s.constants.floor && revise_contacts(s, memory); ++i) {
+      if (s.constants.rigid)
+        left = start_with_contacts(s, memory);
+      else
+        left = restart(s, memory);
+      iterate(s, memory, left, enough);
+    }
+    balance(s, memory);
+  }
+
+  /// Reduces the residual `left` to `enough`.
+  template <class T>
+  static void iterate(const Stepper<T>& s, const Memory<T>& memory, T left, T enough) {
     for (int i = 0; i < most_iterations && left > enough; ++i) {
       const T curvature = apply(s, memory);
       if (!(curvature > 0)) break;  // the direction is so small that its square is 0
@@ -206,21 +225,56 @@ struct Implicit : ImplicitFloor {
   template <class T>
   static T start(const Stepper<T>& s, const Memory<T>& memory) {
     const hn::ScalableTag<T> d;
+    for (std::size_t i = 0; i < 3 * s.masses; i += hn::Lanes(d)) hn::Store(hn::Zero(d), d, memory.correction + i);
+    return restart(s, memory);
+  }
+
+  /// Sets the direction to P r. Returns <r, P r>.
+  template <class T>
+  static T restart(const Stepper<T>& s, const Memory<T>& memory) {
+    const hn::ScalableTag<T> d;
     hn::Vec<decltype(d)> sum = hn::Zero(d);
     for (std::size_t i = 0; i < 3 * s.masses; i += hn::Lanes(d)) {
       const auto r = hn::Load(d, memory.residual + i), direction = hn::Load(d, memory.inverse_diagonal + i) * r;
       hn::Store(direction, d, memory.direction + i);
-      hn::Store(hn::Zero(d), d, memory.correction + i);
       sum = multiply_add(direction, r, sum);
     }
     return hn::GetLane(hn::SumOfLanes(d, sum));
   }
 
-  /// Sets the correction to the rises of the masses that a rigid floor holds. If the solver had to find these, the rest
-  /// of the body would be a small part of its residual, and inaccurate. Returns <r, P r>.
+  /// Moves the body as a whole so that the masses' residuals add up to zero: then the momentum changes by the forces
+  /// from outside alone, apart from rounding. Where the body is held, this only reduces the error.
+  template <class T>
+  static void balance(const Stepper<T>& s, const Memory<T>& memory) {
+    const hn::ScalableTag<T> d;
+    using V = hn::Vec<decltype(d)>;
+    const V damped_dt = hn::Set(d, s.constants.step.damped_dt), zero = hn::Zero(d);
+    V slope = zero;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const T* const resistance = c == 2 ? memory.vertical_resistance : memory.resistance;
+      T *const direction = memory.direction + c * s.masses, *const residual = memory.residual + c * s.masses;
+      V error = zero, inertia = zero;
+      for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d)) {
+        const V inverse_mass = hn::Load(d, s.motion.inverse_mass + i), mass = hn::Load(d, s.motion.mass + i);
+        error = error + zero_unless_greater(inverse_mass, zero, hn::Load(d, residual + i));
+        inertia = inertia + multiply_add(damped_dt, hn::Load(d, resistance + i), mass);
+      }
+      const V common = hn::SumOfLanes(d, error) / hn::SumOfLanes(d, inertia);
+      for (std::size_t i = 0; i < s.masses; i += hn::Lanes(d)) {
+        const V step = zero_unless_greater(hn::Load(d, s.motion.inverse_mass + i), zero, common);
+        hn::Store(step, d, direction + i);
+        slope = multiply_add(step, hn::Load(d, residual + i), slope);
+      }
+    }
+    const T curvature = apply(s, memory);
+    if (curvature > 0) advance_along(s, memory, hn::GetLane(hn::SumOfLanes(d, slope)) / curvature);
+  }
+
+  /// Lets the correction of the masses that a rigid floor holds reach their targets. If the solver had to find these,
+  /// the rest of the body would be a small part of its residual, and inaccurate. Returns <r, P r>.
   template <class T>
   static T start_with_contacts(const Stepper<T>& s, const Memory<T>& memory) {
-    direct_to_rises(s, memory);
+    direct_to_targets(s, memory);
     apply(s, memory);
     const T left = advance_along(s, memory, T(1));
     update_direction(s, memory, T(0));

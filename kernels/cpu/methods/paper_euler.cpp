@@ -12,9 +12,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace evodevo::HWY_NAMESPACE {
 
-/// A step: positions, velocities ─► forces; v <- (v + dt F/m) exp(-rate dt); rigid floor; friction; x <- x + dt v.
-/// Because damping acts after the forces, the terminal velocity of a falling mass is below g/rate, by a share that
-/// grows with dt.
+/// A step: positions, velocities ─► forces; v <- (v + dt F/m) exp(-rate dt)/(1 + dt c |v|/m), with the coefficient of
+/// drag c; rigid floor; friction; x <- x + dt v. Because damping acts after the forces, the terminal velocity of a
+/// falling mass is below g/rate, by a share that grows with dt.
 struct PaperEuler : StepMethod {
   template <class T>
   static void step(const Stepper<T>& s, std::size_t row) {
@@ -22,7 +22,7 @@ struct PaperEuler : StepMethod {
     if (s.constants.rigid) note_arrivals(s.motion, s.constants, T(0), s.masses);
     if (s.constants.gravity) add_gravity(s.motion, s.constants, s.masses);
     if (s.constants.floor) add_floor(s.motion, s.constants, s.masses);
-    if (s.constants.drag) add_drag(s.motion, s.constants, s.masses);
+    if (s.constants.drag) apply_drag<true>(s.motion, s.constants, s.constants.step.dt, s.masses);
     advance_velocities(s.motion, s.constants.step.dt, s.masses);
     if (s.constants.damping) damp(s.motion, s.constants.step.decay, s.masses);
     touch_floor(s);

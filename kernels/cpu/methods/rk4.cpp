@@ -157,7 +157,9 @@ struct Rk4 : StepMethod {
       Triple<V> held = free, mean = load<V>(s, i, &Axis<T>::mean_velocity);
       const V there = advanced_position(clearance, along_normal(ground, way), dt);
       const V lowest = choose(margin, there, lowest_rise(there, half), along_normal(ground, held));
-      rub(s.constants, ground, hold(s, i, ground, lowest, held), held);
+      const V pressed =
+          press(along_normal(ground, v), along_normal(ground, free)) / square_root(normal_squared(ground));
+      rub(s.constants, ground, hold(s, i, ground, lowest, held), pressed, held);
       store(s, i, &Axis<T>::velocity, held);
       store(s, i, &Axis<T>::mean_velocity,
             Triple<V>{multiply_add(weight, free.x - held.x, mean.x), multiply_add(weight, free.y - held.y, mean.y),
@@ -212,13 +214,15 @@ struct Rk4 : StepMethod {
       Triple<V> end = load<V>(s, i, &Axis<T>::velocity), mean = load<V>(s, i, &Axis<T>::mean_velocity);
       store(s, i, &Axis<T>::position, first);
       Ground<V> ground = ground_under(m, s.constants, i);
-      const V arrival = hn::Load(d, m.arrival + i), speed = bounce(restitution, arrival);
+      const V arrival = hn::Load(d, m.arrival + i), pressed = press(arrival, along_normal(ground, end));
+      const V speed = bounce(restitution, arrival, pressed);
       const V rise = along_normal(ground, mean), lowest = lowest_rise(first.z - ground.height, dt);
       const V departure = maximum(speed, lowest);
       const V passage = choose(speed, zero, maximum(half * (departure + arrival), lowest), lowest);
-      const V lift = maximum(departure - along_normal(ground, end), zero) / square_root(normal_squared(ground));
+      const V steepness = square_root(normal_squared(ground));
+      const V lift = maximum(departure - along_normal(ground, end), zero) / steepness;
       push_off(ground, lift_of(m, i, rise, lowest, passage - rise), mean);
-      rub(s.constants, ground, half * lift_of(m, i, rise, lowest, lift), mean);
+      rub(s.constants, ground, half * lift_of(m, i, rise, lowest, lift), half * pressed / steepness, mean);
       store(s, i, &Axis<T>::mean_velocity, mean);
       store(s, i, &Axis<T>::position,
             Triple<V>{advanced_position(first.x, mean.x, dt), advanced_position(first.y, mean.y, dt),
@@ -226,7 +230,7 @@ struct Rk4 : StepMethod {
       ground = ground_under(m, s.constants, i);
       const V missing = maximum(departure - along_normal(ground, end), zero);
       const V push = push_off(ground, lift_of(m, i, rise, lowest, missing), end);
-      rub(s.constants, ground, push, end);
+      rub(s.constants, ground, push, pressed / steepness, end);
       hn::Store(push, d, m.push + i);
       store(s, i, &Axis<T>::velocity, end);
     }

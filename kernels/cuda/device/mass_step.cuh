@@ -17,8 +17,8 @@ namespace evodevo::cuda {
 
 using Number = EVODEVO_NUMBER;
 constexpr bool always = true;
-#define EVODEVO_CONSTANT(name, whole)            \
-  constexpr bool name = EVODEVO_HAS_##name;      \
+#define EVODEVO_CONSTANT(name, whole)       \
+  constexpr bool name = EVODEVO_HAS_##name; \
   static_assert(!name || whole, #name " is a part of " #whole);
 EVODEVO_FEATURES(EVODEVO_CONSTANT)
 #undef EVODEVO_CONSTANT
@@ -202,13 +202,14 @@ __device__ __forceinline__ void damp(Number decay, Moving& m) {
   if constexpr (damping) m.velocity = scaled(m.velocity, decay);
 }
 
-/// Reduces a velocity by the friction of a floor that has added `push` (m/s) along its unit normal.
+/// Reduces a velocity by the friction of a floor that has added `push` (m/s) along its unit normal, of which forces
+/// have caused `pressed` (physics::after_friction()).
 __device__ __forceinline__ void rub(const StepConstants<Number>& constants, const physics::Ground<Number>& ground,
-                                    Number push, Vector& velocity) {
+                                    Number push, Number pressed, Vector& velocity) {
   if constexpr (friction) {
     Number at_rest = 0;
     if constexpr (static_friction) at_rest = constants.static_coefficient;
-    velocity = physics::after_friction(ground, velocity, push, constants.friction_coefficient, at_rest);
+    velocity = physics::after_friction(ground, velocity, push, pressed, constants.friction_coefficient, at_rest);
   }
 }
 
@@ -222,7 +223,8 @@ __device__ __forceinline__ void apply_friction(const StepConstants<Number>& cons
     if constexpr (rough) {
       const auto ground = ground_under(constants, m.position);
       const Number up = constants.dt * part * m.normal_force * m.inverse_mass;
-      rub(constants, ground, up * physics::square_root(physics::normal_squared(ground)), velocity);
+      const Number push = up * physics::square_root(physics::normal_squared(ground));
+      rub(constants, ground, push, push, velocity);
       return;
     }
     Number kept = physics::friction_factor(velocity.x, velocity.y,
@@ -248,11 +250,15 @@ __device__ __forceinline__ void note_arrival(const StepConstants<Number>& consta
   if constexpr (rigid_floor) m.arrival = normal_velocity(constants, m.position, before);
 }
 
+/// The component along the ground's unit normal (m/s) of a velocity whose rise is `rise` (m/s).
+__device__ __forceinline__ Number along_unit_normal(const physics::Ground<Number>& ground, Number rise) {
+  return rise / physics::square_root(physics::normal_squared(ground));
+}
+
 /// Adds `lift` (m/s) to the rise of a mass with the given velocity. Returns what this adds along the unit normal, m/s.
 __device__ __forceinline__ Number push_off(const physics::Ground<Number>& ground, Number lift, Vector& velocity) {
-  const Number squared = physics::normal_squared(ground);
-  velocity = physics::add_along_normal(ground, velocity, lift / squared);
-  return lift / physics::square_root(squared);
+  velocity = physics::add_along_normal(ground, velocity, lift / physics::normal_squared(ground));
+  return along_unit_normal(ground, lift);
 }
 
 /// Lets a rigid floor and its friction act on the velocity that all other forces have given a mass in a step.
@@ -265,9 +271,11 @@ __device__ __forceinline__ void land(const StepConstants<Number>& constants, Mov
     // a mass at rest is at height 0, which takes a GPU longest as a dividend
     const Number lowest = height != 0 ? physics::lowest_rise(height, constants.dt) : 0;
     if (lowest > rise && m.inverse_mass > 0) {
-      const Number after = physics::rise_after_contact(lowest, physics::bounce(constants.restitution, m.arrival));
+      const Number pressed = physics::press(m.arrival, rise);
+      const Number after =
+          physics::rise_after_contact(lowest, physics::bounce(constants.restitution, m.arrival, pressed));
       m.push = push_off(ground, after - rise, m.velocity);
-      rub(constants, ground, m.push, m.velocity);
+      rub(constants, ground, m.push, along_unit_normal(ground, pressed), m.velocity);
     }
   }
 }

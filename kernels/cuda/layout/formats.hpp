@@ -240,7 +240,8 @@ struct ColouredSpring {
 /// A position or velocity in the device's memory.
 template <class T>
 struct alignas(4 * sizeof(T)) Point {
-  T x, y, z, unused;
+  T x, y, z;
+  T w;  ///< for what a method keeps beside the vector
 };
 
 /// A body that is too large for the chip (streamed.cu), or whose method keeps bodies in the device's memory (implicit,

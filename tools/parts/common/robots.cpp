@@ -25,8 +25,7 @@ std::optional<Body> robot_of(const Experiment& experiment, const Genome& genome)
   if (!built.failure.empty()) return std::nullopt;
   if (const auto& payload = experiment.payload) add_payload(built.body, payload->share, payload->top);
   const State birth = state_at_birth(built.body, experiment.scene);
-  const LongestStep step =
-      longest_step({.dt = time_step}, built.body, birth.position, experiment.scene, Method::paper_euler);
+  const LongestStep step = longest_step({.dt = time_step}, built.body, experiment.scene, Method::paper_euler);
   if (!step.failure.empty()) return std::nullopt;
   return std::move(built.body);
 }

@@ -16,8 +16,7 @@
 namespace evodevo::python {
 namespace {
 
-constexpr double longest = 1e6;           ///< simulated time, s
-constexpr double shortest_cycle = 0.001;  ///< s
+constexpr double longest = 1e6;  ///< simulated time, s
 
 /// A word of Python, and what it stands for.
 template <class T>

@@ -1,4 +1,4 @@
-// implicit: linearised backward Euler, solved by conjugate gradients. kernels/cpu/methods/implicit-inl.hpp states the
+// implicit: linearised backward Euler, solved by conjugate gradients. kernels/cpu/methods/implicit.cpp states the
 // equation. One block simulates a body:
 //
 //   begin   positions, velocities ─► the equation, its residual for zero correction
@@ -12,7 +12,7 @@ namespace evodevo::cuda {
 
 // the same numbers as on the CPU
 constexpr double tolerance = sizeof(Number) == sizeof(float) ? 1e-4 : 1e-6;
-constexpr int most_iterations = 500;
+constexpr int most_iterations = 500, most_revisions = 8;
 
 /// K+ of a spring, aligned so that it is read and written by single instructions.
 struct alignas(4 * sizeof(Number)) Stiffness : physics::SpringStiffness<Number> {};
@@ -22,7 +22,7 @@ struct Memory {
   Point<Number>*residual, *correction;
   Point<Number>* applied;           // the matrix times the direction
   Point<Number>* inverse_diagonal;  // the preconditioner: 1/(diagonal of the matrix); 0 for fixed masses
-  Point<Number>* resistance;        // R, kg/s
+  Point<Number>* resistance;        // R, kg/s; in w, the rise that the floor lets a mass have, m/s
   Point<Number>* direction;         // on the chip if there is room, because neighbours read it
   Stiffness* stiffness;             // [joints]
   std::uint32_t* other;  // [joints] the mass at the other end: a copy, because reading whole joints would take longer
@@ -50,18 +50,32 @@ __device__ __forceinline__ Number dot(const Vector& a, const Vector& b) {
   return physics::multiply_add(a.z, b.z, physics::multiply_add(a.y, b.y, a.x * b.x));
 }
 
-/// Returns R (kg/s) and adds the force of an elastic floor at the present position to the force.
-__device__ __forceinline__ Vector resistance_of(const StepConstants<Number>& constants, Moving& m) {
-  Number across = 0, touching = 0;
+/// The resistance of a mass to drag, kg/s.
+__device__ __forceinline__ Number drag_resistance(const StepConstants<Number>& constants, const Moving& m) {
+  Number across = 0;
   if constexpr (drag) across = -physics::drag_factor(constants.drag_coefficient, m.velocity);
-  if constexpr (elastic_floor) {
-    touching = physics::zero_unless_greater(-next_clearance(constants, m), Number(0), constants.floor_stiffness);
-    const Number above = clearance(constants, m.position);
-    m.force.z = physics::negative_multiply_add(touching, above, m.force.z);
-    add_horizontal_part(constants, m.position, -touching * above, m.force);
-  }
-  return {across, across, physics::multiply_add(constants.dt, touching, across)};
+  return across;
 }
+
+/// The floor under a mass at the beginning of a step (kernels/cpu/methods/implicit_floor-inl.hpp).
+struct Contact {
+  physics::Ground<Number> ground;
+  Number stiffness;  ///< dt times the stiffness with which the floor holds the mass, kg/s
+  Number target;     ///< rise after the contact, m/s
+  Number lowest;     ///< rise below which the mass enters the floor in the step, m/s
+};
+
+__device__ __forceinline__ Contact contact(const StepConstants<Number>& constants, const Moving& m, Number target) {
+  const auto ground = ground_of(constants, m.position);
+  if constexpr (rigid_floor) {
+    const Number lowest = physics::lowest_rise(m.position.z - ground.height, constants.dt);
+    return {ground, Number(1e4) / constants.dt * m.mass, target, lowest};
+  }
+  return {ground, constants.dt * constants.floor_stiffness, target, target};
+}
+
+/// The part of R with which the floor holds a mass, kg/s.
+__device__ __forceinline__ Number held_by(const Point<Number>& resistance) { return resistance.z - resistance.x; }
 
 /// R times the vector v.
 __device__ __forceinline__ Vector resisted(const StepConstants<Number>& constants, const Vector& position,
@@ -106,35 +120,31 @@ __device__ __forceinline__ Vector add_springs(const StepConstants<Number>& const
   return diagonal;
 }
 
-/// The rise of a mass after its contact with a rigid floor, m/s.
-__device__ __forceinline__ Number rise_after(const StepConstants<Number>& constants,
-                                             const physics::Ground<Number>& ground, const Moving& m) {
-  const Number lowest = physics::lowest_rise(m.position.z - ground.height, constants.dt);
-  return physics::rise_after_contact(lowest, physics::bounce(constants.restitution, m.arrival));
-}
-
-/// Adds the force with which a rigid floor holds a mass in this step, if it does, and returns the stiffness of that
-/// hold (N/m) or 0. kernels/cpu/methods/implicit_floor-inl.hpp says which masses are held.
-__device__ __forceinline__ Number hold(const StepConstants<Number>& constants, Moving& m) {
+/// Guesses whether the floor holds a mass at the end of the step, and adds the force that belongs to that. Returns dt
+/// times the stiffness of the hold (kg/s), 0 for a mass that is not held, and sets the target.
+/// kernels/cpu/methods/implicit_floor-inl.hpp says which masses are held.
+__device__ __forceinline__ Number touch(const StepConstants<Number>& constants, Moving& m, Number& target) {
   const auto ground = ground_of(constants, m.position);
   const Number dt = constants.dt, clearance = m.position.z - ground.height;
-  const Number rise = physics::multiply_add(dt * m.inverse_mass, physics::along_normal(ground, m.force), m.arrival);
-  const Number lowest = physics::lowest_rise(clearance, dt);
-  const bool is_near = physics::multiply_add(dt, m.arrival, clearance) < Number(1e-3) * dt;
-  if (!(is_near && lowest > rise)) return 0;
-  const Number stiffness = Number(1e4) / (dt * dt) * m.mass;
-  m.force = physics::add_along_normal(ground, m.force, stiffness * dt * rise_after(constants, ground, m));
-  return stiffness;
+  Number rise = m.arrival, reach = 1;
+  target = -clearance / dt;
+  if constexpr (rigid_floor) {
+    rise = physics::multiply_add(dt * m.inverse_mass, physics::along_normal(ground, m.force), m.arrival);
+    const Number speed = physics::bounce(constants.restitution, m.arrival, physics::press(m.arrival, rise));
+    target = physics::rise_after_contact(physics::lowest_rise(clearance, dt), speed);
+    reach = Number(1e-3) * dt - physics::multiply_add(dt, m.arrival, clearance);
+  }
+  const Contact c = contact(constants, m, target);
+  if (!(c.lowest > rise && reach > 0 && m.inverse_mass > 0)) return 0;
+  m.force = physics::add_along_normal(ground, m.force, c.stiffness * target);
+  return c.stiffness;
 }
 
-/// The correction that gives a mass that a rigid floor holds the rise after its contact; zero for other masses.
-/// `resistance` is R.
-__device__ __forceinline__ Vector rise_correction(const StepConstants<Number>& constants, const Moving& m,
-                                                  const Vector& resistance) {
+/// What the velocity at the end of the step lacks for the target of a mass that a rigid floor holds; zero for other
+/// masses. `held`: whether it does.
+__device__ __forceinline__ Vector missing_rise(const Contact& c, bool held, const Vector& velocity) {
   Vector correction{0, 0, 0};
-  if (!(resistance.z > resistance.x)) return correction;
-  const auto ground = ground_of(constants, m.position);
-  push_off(ground, rise_after(constants, ground, m) - physics::along_normal(ground, m.velocity), correction);
+  if (held) push_off(c.ground, c.target - physics::along_normal(c.ground, velocity), correction);
   return correction;
 }
 
@@ -151,12 +161,15 @@ __device__ __forceinline__ double begin(const StepConstants<Number>& constants, 
   double left = 0;
   for_each_mass(body, [&](unsigned mass) {
     Moving m = moving(body, mass);
-    note_arrival(constants, m.velocity, m);
-    Vector resistance = resistance_of(constants, m), rate{0, 0, 0};
+    if constexpr (has_floor) m.arrival = normal_velocity(constants, m.position, m.velocity);
+    const Number across = drag_resistance(constants, m);
+    Vector rate{0, 0, 0};
     add_gravity(constants, m);
     damp(constants.decay, m);
     const Vector stiffness = add_springs(constants, body, memory, row, mass, m, rate);
-    if constexpr (rigid_floor) resistance.z = physics::multiply_add(constants.dt, hold(constants, m), resistance.x);
+    Number held = 0, target = 0;
+    if constexpr (has_floor) held = touch(constants, m, target);
+    const Vector resistance{across, across, across + held};
     m.force = sum(m.force, constants.dt, rate);
     const Vector all = sum(resistance, constants.dt, stiffness);
     const Vector inverse_diagonal{inverse(constants, m, all.x), inverse(constants, m, all.y),
@@ -165,14 +178,48 @@ __device__ __forceinline__ double begin(const StepConstants<Number>& constants, 
         scaled(difference(m.force, resisted(constants, m.position, resistance, m.velocity)), constants.damped_dt);
     Vector direction = product(inverse_diagonal, residual);
     left += dot(direction, residual);
-    if constexpr (rigid_floor) direction = rise_correction(constants, m, resistance);
-    memory.resistance[mass] = point(resistance);
+    if constexpr (rigid_floor) direction = missing_rise(contact(constants, m, target), held > 0, m.velocity);
+    memory.resistance[mass] = {across, across, across + held, target};
     memory.inverse_diagonal[mass] = point(inverse_diagonal);
     memory.residual[mass] = point(residual);
     memory.direction[mass] = point(direction);
     memory.correction[mass] = {0, 0, 0, 0};
   });
   return sum_for_all(left);
+}
+
+/// Lets go of the masses that the floor would pull down at the end of the step, and holds those that would enter it,
+/// given the present correction. Sets the residual of the new equation and the first direction, as begin() does.
+/// Returns <r, P r>; a negative number if nothing has changed.
+__device__ __forceinline__ double revise_contacts(const StepConstants<Number>& constants, const Body& body,
+                                                  const Memory& memory) {
+  double left = 0, changes = 0;
+  for_each_mass(body, [&](unsigned mass) {
+    Moving m = moving(body, mass);
+    damp(constants.decay, m);
+    const Vector velocity = sum(m.velocity, Number(1), triple(memory.correction[mass]));
+    Point<Number> resistance = memory.resistance[mass];
+    const Contact c = contact(constants, m, resistance.w);
+    const Number before = held_by(resistance), rise = physics::along_normal(c.ground, velocity);
+    const bool held = m.inverse_mass > 0 && (before > 0 ? c.target : c.lowest) > rise;
+    Vector residual = triple(memory.residual[mass]), inverse_diagonal = triple(memory.inverse_diagonal[mass]);
+    if (held != (before > 0)) {
+      changes += 1;
+      const Number change = held ? c.stiffness : -before;
+      residual = physics::add_along_normal(c.ground, residual, constants.damped_dt * change * (c.target - rise));
+      inverse_diagonal.z = 1 / physics::multiply_add(constants.damped_dt, change, 1 / inverse_diagonal.z);
+      resistance.z = held ? resistance.x + change : resistance.x;
+      memory.residual[mass] = point(residual);
+      memory.inverse_diagonal[mass] = point(inverse_diagonal);
+      memory.resistance[mass] = resistance;
+    }
+    Vector direction = product(inverse_diagonal, residual);
+    left += dot(direction, residual);
+    if constexpr (rigid_floor) direction = missing_rise(c, held, velocity);
+    memory.direction[mass] = point(direction);
+  });
+  left = sum_for_all(left);
+  return sum_for_all(changes) > 0 ? left : -1;
 }
 
 /// Sets memory.applied to the matrix times the direction d. Returns <d, applied>.
@@ -217,16 +264,22 @@ __device__ __forceinline__ void update_direction(const Body& body, const Memory&
   __syncthreads();
 }
 
-/// Solves the equation for the correction. `left` is <r, P r> at the start.
-__device__ __forceinline__ void solve(const StepConstants<Number>& constants, const Body& body, const Memory& memory,
-                                      double left) {
+/// Goes from the correction of the masses that a rigid floor holds, which is the first direction, to the direction P r.
+/// If the solver had to find that correction, the rest of the body would be a small part of its residual, and
+/// inaccurate. `left` is <r, P r>; returns the new one.
+__device__ __forceinline__ double start_with_contacts(const StepConstants<Number>& constants, const Body& body,
+                                                      const Memory& memory, double left) {
   if constexpr (rigid_floor) {
-    // begins with the rises of the masses that the floor holds
     apply(constants, body, memory);
     left = advance_along(body, memory, 1);
     update_direction(body, memory, 0);
   }
-  const double enough = tolerance * tolerance * left;
+  return left;
+}
+
+/// Reduces the residual, of which `left` measures the present one, to `enough`.
+__device__ __forceinline__ void iterate(const StepConstants<Number>& constants, const Body& body, const Memory& memory,
+                                        double left, double enough) {
   for (int i = 0; i < most_iterations && left > enough; ++i) {
     const double curvature = apply(constants, body, memory);
     if (!(curvature > 0)) break;  // the direction is so small that its square is 0
@@ -236,18 +289,64 @@ __device__ __forceinline__ void solve(const StepConstants<Number>& constants, co
   }
 }
 
+/// Moves the body as a whole so that the masses' residuals add up to zero: then the momentum changes by the forces from
+/// outside alone, apart from rounding. Where the body is held, this only reduces the error.
+__device__ __forceinline__ void balance(const StepConstants<Number>& constants, const Body& body,
+                                        const Memory& memory) {
+  double x = 0, y = 0, z = 0, inertia = 0, vertical_inertia = 0;
+  for_each_mass(body, [&](unsigned mass) {
+    if (!(body.inverse_mass[mass] > 0)) return;
+    const Vector residual = triple(memory.residual[mass]);
+    x += residual.x, y += residual.y, z += residual.z;
+    inertia += physics::multiply_add(constants.damped_dt, memory.resistance[mass].x, body.mass[mass]);
+    vertical_inertia += physics::multiply_add(constants.damped_dt, memory.resistance[mass].z, body.mass[mass]);
+  });
+  inertia = sum_for_all(inertia);
+  const Vector common{static_cast<Number>(sum_for_all(x) / inertia), static_cast<Number>(sum_for_all(y) / inertia),
+                      static_cast<Number>(sum_for_all(z) / sum_for_all(vertical_inertia))};
+  double slope = 0;
+  for_each_mass(body, [&](unsigned mass) {
+    const Vector step = body.inverse_mass[mass] > 0 ? common : Vector{0, 0, 0};
+    memory.direction[mass] = point(step);
+    slope += dot(step, triple(memory.residual[mass]));
+  });
+  slope = sum_for_all(slope);
+  const double curvature = apply(constants, body, memory);
+  if (curvature > 0) advance_along(body, memory, static_cast<Number>(slope / curvature));
+}
+
+/// Solves the equation for the correction. `left` is <r, P r> at the start.
+__device__ __forceinline__ void solve(const StepConstants<Number>& constants, const Body& body, const Memory& memory,
+                                      double left) {
+  left = start_with_contacts(constants, body, memory, left);
+  const double enough = tolerance * tolerance * left;
+  iterate(constants, body, memory, left, enough);
+  if constexpr (has_floor) {
+    for (int i = 0; i < most_revisions; ++i) {
+      left = revise_contacts(constants, body, memory);
+      if (left < 0) break;
+      iterate(constants, body, memory, start_with_contacts(constants, body, memory, left), enough);
+    }
+  }
+  balance(constants, body, memory);
+}
+
 /// Lets a rigid floor and its friction act on the velocity at the end of the step. `hold` is the part of R with which
-/// the floor holds the mass (kg/s). The push of a held mass is what the hold has added to its rise.
-__device__ __forceinline__ void land_held(const StepConstants<Number>& constants, Number hold, Moving& m) {
-  if (!(hold > 0)) return land(constants, m);
-  const auto ground = ground_of(constants, m.position);
-  const Number squared = physics::normal_squared(ground);
-  const Number missing = rise_after(constants, ground, m) - physics::along_normal(ground, m.velocity);
-  if (!(missing > 0)) return;  // the hold has pulled
-  const Number held = constants.damped_dt * hold * m.inverse_mass * squared;
-  push_off(ground, missing, m.velocity);
-  m.push = physics::multiply_add(held, missing, missing) / physics::square_root(squared);
-  rub(constants, ground, m.push, m.velocity);
+/// the floor holds the mass (kg/s). The push of a held mass is what the hold has added to its rise; that of another
+/// one, which the solver has let into the floor, acts on it alone.
+__device__ __forceinline__ void land_held(const StepConstants<Number>& constants, const Point<Number>& resistance,
+                                          Moving& m) {
+  const Contact c = contact(constants, m, resistance.w);
+  const Number hold = held_by(resistance), rise = physics::along_normal(c.ground, m.velocity);
+  const Number missing = c.target - rise;
+  const bool enters = c.lowest > rise && m.inverse_mass > 0;
+  if (!(hold > 0 ? missing > 0 : enters)) return;
+  push_off(c.ground, missing, m.velocity);
+  const Number held = constants.damped_dt * hold * m.inverse_mass * physics::normal_squared(c.ground);
+  const Number lift = physics::multiply_add(held, missing, missing);
+  const Number impact = physics::maximum(c.target - m.arrival, Number(0));
+  m.push = along_unit_normal(c.ground, lift);
+  rub(constants, c.ground, m.push, along_unit_normal(c.ground, physics::maximum(lift - impact, Number(0))), m.velocity);
 }
 
 __device__ __forceinline__ void move(const StepConstants<Number>& constants, const Body& body, const Memory& memory) {
@@ -256,13 +355,12 @@ __device__ __forceinline__ void move(const StepConstants<Number>& constants, con
     note_arrival(constants, m.velocity, m);
     damp(constants.decay, m);
     m.velocity = sum(m.velocity, Number(1), triple(memory.correction[mass]));
-    if constexpr (rigid_floor) land_held(constants, memory.resistance[mass].z - memory.resistance[mass].x, m);
+    const Point<Number> resistance = memory.resistance[mass];
+    if constexpr (rigid_floor) land_held(constants, resistance, m);
     if constexpr (elastic_floor && friction) {
-      // the floor's force at the end of the step; never negative, so the floor does not hold masses that leave it
-      const Number z = next_clearance(constants, m);
-      const Number touches = memory.resistance[mass].z - memory.resistance[mass].x;
-      m.normal_force =
-          physics::zero_unless_greater(touches, Number(0), physics::floor_force(constants.floor_stiffness, z));
+      // the floor's force at the end of the step
+      const Number missing = resistance.w - normal_velocity(constants, m.position, m.velocity);
+      m.normal_force = held_by(resistance) * physics::maximum(missing, Number(0));
     }
     apply_friction(constants, 1, m, m.velocity);
     advance_position(constants.dt, m);

@@ -1,4 +1,4 @@
-// paper-euler; kernels/cpu/methods/paper_euler-inl.hpp describes it.
+// paper-euler; kernels/cpu/methods/paper_euler.cpp describes it.
 #pragma once
 
 #include "cuda/device/mass_step.cuh"
@@ -10,7 +10,7 @@ struct Method : OnePass {
     note_arrival(constants, m.velocity, m);
     add_gravity(constants, m);
     add_floor(constants, m);
-    add_drag(constants, m);
+    apply_drag<true>(constants, constants.dt, m);
     advance_velocity(constants.dt, m);
     damp(constants.decay, m);
     land(constants, m);

@@ -1,4 +1,4 @@
-// rk4; kernels/cpu/methods/rk4-inl.hpp describes it.
+// rk4; kernels/cpu/methods/rk4.cpp describes it.
 #pragma once
 
 #include "cuda/device/mass_step.cuh"
@@ -62,7 +62,10 @@ struct Method : OnePass {
     m.velocity = sum(kept.velocity, time * m.inverse_mass, m.force);
     if (!(there < Number(1e-3) * constants.dt)) return;
     const Vector free = m.velocity;
-    rub(constants, ground, hold(ground, physics::lowest_rise(there, constants.dt / 2), m, m.velocity), m.velocity);
+    const Number pressed =
+        physics::press(physics::along_normal(ground, kept.velocity), physics::along_normal(ground, free));
+    const Number push = hold(ground, physics::lowest_rise(there, constants.dt / 2), m, m.velocity);
+    rub(constants, ground, push, along_unit_normal(ground, pressed), m.velocity);
     kept.mean_velocity = sum(kept.mean_velocity, share, difference(free, m.velocity));
   }
 
@@ -91,15 +94,17 @@ struct Method : OnePass {
     const Number lowest = physics::lowest_rise(kept.position.z - ground.height, constants.dt);
     if (!(lowest > rise && m.inverse_mass > 0)) return;
     const Number arrival = physics::along_normal(ground, kept.velocity);
-    const Number speed = physics::bounce(constants.restitution, arrival), departure = physics::maximum(speed, lowest);
+    const Number pressed = physics::press(arrival, physics::along_normal(ground, m.velocity));
+    const Number speed = physics::bounce(constants.restitution, arrival, pressed);
+    const Number departure = physics::maximum(speed, lowest), along = along_unit_normal(ground, pressed);
     const Number passage = speed > 0 ? physics::maximum((departure + arrival) / 2, lowest) : lowest;
     push_off(ground, passage - rise, kept.mean_velocity);
     const Number lift = physics::maximum(departure - physics::along_normal(ground, m.velocity), Number(0));
-    rub(constants, ground, lift / physics::square_root(physics::normal_squared(ground)) / 2, kept.mean_velocity);
+    rub(constants, ground, along_unit_normal(ground, lift) / 2, along / 2, kept.mean_velocity);
     const auto there = ground_of(constants, sum(kept.position, constants.dt, kept.mean_velocity));
     const Number missing = physics::maximum(departure - physics::along_normal(there, m.velocity), Number(0));
     m.push = push_off(there, missing, m.velocity);
-    rub(constants, there, m.push, m.velocity);
+    rub(constants, there, m.push, along, m.velocity);
   }
 };
 

@@ -1,4 +1,4 @@
-// symplectic-euler; kernels/cpu/methods/symplectic_euler-inl.hpp describes it.
+// symplectic-euler; kernels/cpu/methods/symplectic_euler.cpp describes it.
 #pragma once
 
 #include "cuda/device/mass_step.cuh"

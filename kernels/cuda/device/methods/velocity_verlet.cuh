@@ -1,4 +1,4 @@
-// velocity-verlet; kernels/cpu/methods/velocity_verlet-inl.hpp describes it.
+// velocity-verlet; kernels/cpu/methods/velocity_verlet.cpp describes it.
 #pragma once
 
 #include "cuda/device/mass_step.cuh"
@@ -58,11 +58,14 @@ struct Method : OnePass {
     apply_friction(constants, Number(0.5), m, m.velocity);
   }
 
-  /// Stops the descent of a mass that a rigid floor has pushed before the drift.
+  /// Stops the descent of a mass that a rigid floor has pushed before the drift, after half a step of its forces.
   static __device__ __forceinline__ void stay_landed(const StepConstants<Number>& constants, Number push, Moving& m) {
     const auto ground = ground_of(constants, m.position);
     const Number rise = physics::along_normal(ground, m.velocity);
-    if (push > 0 && rise < 0) rub(constants, ground, push_off(ground, -rise, m.velocity), m.velocity);
+    if (!(push > 0 && rise < 0)) return;
+    const Number by = constants.dt / 2 * m.inverse_mass;
+    const Number pressed = physics::press(Number(0), by * physics::along_normal(ground, m.force));
+    rub(constants, ground, push_off(ground, -rise, m.velocity), along_unit_normal(ground, pressed), m.velocity);
   }
 };
 

@@ -1,4 +1,4 @@
-// xpbd: extended position-based dynamics. kernels/cpu/methods/xpbd-inl.hpp describes it. One block simulates a body and
+// xpbd: extended position-based dynamics. kernels/cpu/methods/xpbd.cpp describes it. One block simulates a body and
 // solves the colours of its springs one after the other; no two springs of a colour share a mass.
 //
 //   apply_gravity   velocities ─► predicted velocities
