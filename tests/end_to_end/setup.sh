@@ -181,7 +181,7 @@ case_no_charts() {
 }
 
 case_packages() {
-  prints "evodevo run some.toml" tools/evodevo run some.toml
+  prints "evodevo operators" tools/evodevo operators
   has g++ cmake make ninja-build libhwy-dev
   has_not libgtest-dev libgmock-dev python3 pybind11-dev nodejs npm ffmpeg chromium
   : >"$called"
@@ -196,6 +196,16 @@ case_packages() {
     has_not libgtest-dev
   }
   [[ $(cat "$called") != *"holds the lock"* ]] || fail "what is installed could hold the lock for good"
+}
+
+case_page_of_the_first_run() {
+  prints "evodevo run some.toml" tools/evodevo run some.toml
+  has g++ nodejs npm
+  has_not libgtest-dev ffmpeg chromium
+  grep -q '^ninja .* evodevo_viewer$' "$called" || fail "it does not build the viewer"
+  : >"$called"
+  call tools/evodevo run some.toml
+  [ "$(times '^apt-get\|^cmake')" = 0 ] || fail "it sets up what is set up"
 }
 
 case_tests() {
