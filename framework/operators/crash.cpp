@@ -1,5 +1,6 @@
 #include "operators/crash.hpp"
 
+#include <dlfcn.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -69,7 +70,6 @@ void name_crashing_operators() {
   for (const int signal : fatal_signals) sigaddset(&action.sa_mask, signal);
   for (const int signal : fatal_signals) sigaction(signal, &action, nullptr);
   names_exits = true;
-  on_exit([](int status, void*) { refuse_to_exit(status); }, nullptr);
 }
 
 void leave_crashes_unnamed() {
@@ -79,10 +79,17 @@ void leave_crashes_unnamed() {
 
 }  // namespace evodevo
 
-// These replace the C library's _exit() and _Exit() also for the libraries of operators, because the dynamic linker
-// searches the program for a symbol before it searches libraries.
+// These replace the C library's functions also for the libraries of operators, because the dynamic linker searches the
+// program for a symbol before it searches libraries. An operator must not get as far as the handlers that exit() calls:
+// they destroy what other threads are still using.
+extern "C" __attribute__((visibility("default"))) void exit(int status) noexcept {
+  evodevo::refuse_to_exit(status);
+  reinterpret_cast<void (*)(int)>(dlsym(RTLD_NEXT, "exit"))(status);
+  __builtin_unreachable();
+}
 extern "C" __attribute__((visibility("default"))) void _exit(int status) {
   evodevo::refuse_to_exit(status);
   while (true) syscall(SYS_exit_group, status);
 }
 extern "C" __attribute__((visibility("default"))) void _Exit(int status) noexcept { _exit(status); }
+extern "C" __attribute__((visibility("default"))) void quick_exit(int status) noexcept { _exit(status); }

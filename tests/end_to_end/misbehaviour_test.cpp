@@ -68,10 +68,15 @@ TEST_F(Misbehaviour, ACallThatNeverEndsIsNamedAndOneCtrlCEndsItBeforeTheWarningT
 }
 
 TEST_F(Misbehaviour, AnOperatorThatExitsIsNoSuccess) {
-  for (const char* how : {"exit", "exit-at-once", "quick-exit"}) {
+  for (const char* how : {"exit", "exit-at-once", "exit-by-standard", "quick-exit"}) {
     EXPECT_THAT(output(mutating(how), 1), naming(named("mutation") + ", individual 6, seed 7: ", "exit code 0")) << how;
     EXPECT_EQ(archive().generations().size(), 1u);
   }
+  // several threads exit at the same time, which does not always go wrong
+  const Words threads{"--threads", "4"};
+  for (int i = 0; i < 8; ++i)
+    EXPECT_THAT(output(joined(command("development.operator.0", "exit"), threads), 1),
+                naming(named("devo") + ", individual ", "exit code 3"));
 }
 
 TEST_F(Misbehaviour, ACrashIsNamedWithWhatIsKnownOfTheCall) {

@@ -79,7 +79,8 @@ struct Mutation final : Told<evodevo::Mutation> {
     if (how == "hang") hang();
     if (how == "exit") std::exit(0);
     if (how == "exit-at-once") _exit(0);
-    if (how == "quick-exit") std::_Exit(0);
+    if (how == "exit-by-standard") std::_Exit(0);
+    if (how == "quick-exit") std::quick_exit(0);
     if (how == "overflow") deeper(0);
     if (how == "round") std::fesetround(FE_UPWARD);
 #if defined(__SSE__)
@@ -124,6 +125,7 @@ struct Devo final : Told<evodevo::Devo> {
   void develop(const evodevo::DevoContext& context, evodevo::Edits&, evodevo::Rng&) const override {
     at_end.crashes = how == "crash-at-end";
     if (how == "crash" && context.cycle == 2) std::raise(SIGSEGV);
+    if (how == "exit") std::exit(3);
     if (how == "overflow" && context.cycle == 2) deeper(0);
   }
 };
