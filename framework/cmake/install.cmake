@@ -16,26 +16,82 @@ install(EXPORT evodevo NAMESPACE evodevo:: FILE evodevoTargets.cmake DESTINATION
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/framework/sdk/evodevo ${PROJECT_SOURCE_DIR}/kernels/include/evodevo
   DESTINATION include COMPONENT sdk FILES_MATCHING PATTERN "*.hpp")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/framework/template DESTINATION share/evodevo)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/experiments DESTINATION share/evodevo
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/experiments DESTINATION share/evodevo COMPONENT sdk
   FILES_MATCHING PATTERN "*.toml" PATTERN "*.obj" PATTERN results EXCLUDE PATTERN study EXCLUDE)
 install(PROGRAMS ${PROJECT_SOURCE_DIR}/tools/cluster/run.sbatch DESTINATION share/evodevo)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION share/doc/evodevo RENAME copyright)
 
-# evodevo_install_page(FILE NAME): installs a page under another name, with links that lead to the installed files
+# Pages about the use of evodevo: each is installed under another name, with links that lead to what is installed. Other
+# links become plain text, and pictures are left out.
+set(pages
+  plugins/README.md=operators.md
+  experiments/README.md=experiments.md
+  framework/commands/README.md=commands.md
+  framework/evolution/archive/README.md=archive.md
+  kernels/README.md=simulation.md
+  tools/python/README.md=python.md
+  framework/sdk/README.md=plugins.md)
+foreach(page encoding variation devo fitness selection helpers trust)
+  list(APPEND pages framework/sdk/${page}.md=${page}.md)
+endforeach()
+
+# evodevo_installed_link(RESULT PATH): where a file of the source tree is, seen from the installed pages; empty if it is
+# not installed
+function(evodevo_installed_link result path)
+  set(link "")
+  foreach(page ${pages})
+    string(REPLACE "=" ";" page ${page})
+    list(GET page 0 source)
+    list(GET page 1 name)
+    if(path STREQUAL source)
+      set(link ${name})
+    endif()
+  endforeach()
+  if(path MATCHES "^(framework/sdk|kernels/include)/(evodevo/.*)$")
+    set(link ../../../include/${CMAKE_MATCH_2})
+  elseif(path MATCHES "^experiments/.*\\.(toml|obj)$" AND NOT path MATCHES "^experiments/(results|study)/")
+    set(link ../../evodevo/${path})
+  endif()
+  set(${result} "${link}" PARENT_SCOPE)
+endfunction()
+
+# evodevo_install_page(FILE NAME): installs a page under another name
 function(evodevo_install_page file name)
   set(source ${PROJECT_SOURCE_DIR}/${file})
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${source})
+  get_filename_component(folder ${source} DIRECTORY)
   file(READ ${source} text)
-  string(REGEX REPLACE "\\]\\((\\.\\./\\.\\./kernels/include/)?evodevo/" "](../../../include/evodevo/" text "${text}")
-  string(REPLACE "](README.md" "](plugins.md" text "${text}")
+  # marks instead of brackets, which confuse CMake's lists
+  string(ASCII 1 mark)
+  string(ASCII 2 dead)
+  string(REPLACE "](" "${mark}(" text "${text}")
+  string(REGEX MATCHALL "${mark}\\([^)]*\\)" links "${text}")
+  list(REMOVE_DUPLICATES links)
+  foreach(link ${links})
+    string(REGEX REPLACE "^.\\(([^#)]*)(#?[^)]*)\\)$" "\\1" target "${link}")
+    set(anchor "${CMAKE_MATCH_2}")
+    if(target STREQUAL "" OR target MATCHES "^[a-z]+:")
+      continue()
+    endif()
+    get_filename_component(target ${target} ABSOLUTE BASE_DIR ${folder})
+    file(RELATIVE_PATH target ${PROJECT_SOURCE_DIR} ${target})
+    evodevo_installed_link(installed "${target}")
+    if(installed)
+      string(REPLACE "${link}" "${mark}(${installed}${anchor})" text "${text}")
+    else()
+      string(REPLACE "${link}" "${dead}" text "${text}")
+    endif()
+  endforeach()
+  string(REGEX REPLACE "!\\[[^${dead}${mark}]*${dead}" "" text "${text}")
+  string(REGEX REPLACE "\\[([^[${dead}${mark}]*)${dead}" "\\1" text "${text}")
+  string(REPLACE "${mark}(" "](" text "${text}")
   set(page ${CMAKE_CURRENT_BINARY_DIR}/pages/${name})
   file(WRITE ${page} "${text}")
   install(FILES ${page} DESTINATION share/doc/evodevo COMPONENT sdk)
 endfunction()
-evodevo_install_page(plugins/README.md operators.md)
-evodevo_install_page(framework/sdk/README.md plugins.md)
-foreach(page encoding variation devo fitness selection helpers trust)
-  evodevo_install_page(framework/sdk/${page}.md ${page}.md)
+foreach(page ${pages})
+  string(REPLACE "=" ";" page ${page})
+  evodevo_install_page(${page})
 endforeach()
 
 # The viewer, if it was built, which requires Node.js. The packages that only bundle the page are left out.

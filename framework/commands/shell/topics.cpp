@@ -95,7 +95,8 @@ Topic plugins() {
                "evodevo checks a library before it uses it, and says why it refuses one: see "
                "`evodevo operators --failed`. It names an operator that crashes, throws or takes too long.",
                "share/doc/evodevo/plugins.md, which is framework/sdk/README.md in the sources, teaches how to write "
-               "an operator. Beside it is a page for each kind of operator."},
+               "an operator. Beside it are a page for each kind of operator, and those on experiments, commands, "
+               "archives, the simulation and Python."},
       .definitions = {},
       .example = R"(evodevo new devo my-lab.growth && cd my-lab.growth
 cmake -B build && cmake --build build
