@@ -233,6 +233,7 @@ Json verification_json(const Verification& verification, const Objective& object
   return {{"individual", verification.individual},
           {"fitness", verification.fitness},
           {"marks", marks(verification, objective.maximise)},
+          {"verdict", verdict_text(verification, objective.maximise)},
           {"trials", std::move(trials)}};
 }
 

@@ -111,6 +111,9 @@ test("it shows whom verification before the front has refused", async () => {
   const newborns = archived(run, "SELECT count(*) FROM individuals GROUP BY born ORDER BY born").map(([n]) => n);
   assert.deepEqual(top, rows.map((row, i) => (100 * row[last]) / newborns[i]));
   assert.equal(await verified.locator(".bar > span:first-child").last().textContent(), "verify");
+  const { verdict } = await inPage(verified, ({ data }) => data.runs[0].best.verification);
+  assert.match(verdict, /^(verified|artefact|passive)/);
+  assert.ok((await verified.locator(".fact", { hasText: "The best, verified" }).textContent()).endsWith(verdict));
   await closed(verified);
 });
 

@@ -4,9 +4,10 @@ import pathlib
 import shutil
 import subprocess
 
+from common.command_line import NO_FITNESS
+
 # Open MPI refuses to work for root, or to start more processes than cores, unless it is told
 AS_ROOT = ("env", "OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1")
-NO_FITNESS = 3  # exit code of a complete run in which no individual has a fitness
 RANKS = (*AS_ROOT, "mpirun", "--oversubscribe", "--bind-to", "none", "-n")
 
 

@@ -12,12 +12,13 @@ import subprocess
 import threading
 import tomllib
 
+from common.command_line import NO_FITNESS, STOPPED
+
 from .amounts import CONTROLS, are_changed_alike, first_robots, keeps_amounts
-from .calls import NO_FITNESS, RANKS, Broken, Program, obstacle_to_ranks, require
+from .calls import RANKS, Broken, Program, obstacle_to_ranks, require
 from .rounding import moves_as_in_double
 from .run_page import Page
 
-STOPPED = 130  # exit code of a run that was asked to stop
 NOT_COMPARED = ("record", "provenances", "operators", "files")  # tables that tell where and how a run was made
 OTHERWISE = {"generations": ("wall_time",), "individuals": ("provenance",)}  # columns that do, too
 

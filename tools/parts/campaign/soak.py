@@ -10,8 +10,8 @@ import tempfile
 import threading
 import time
 
-from .calls import NO_FITNESS
-from .laws import STOPPED
+from common.command_line import NO_FITNESS, STOPPED
+
 from .outcomes import Outcome
 
 EXPERIMENT = """\

@@ -4,6 +4,10 @@ import argparse
 import signal
 import sys
 
+# exit codes of `evodevo run`
+NO_FITNESS = 3  # the run is complete, but no individual has a fitness
+STOPPED = 130  # the run was asked to stop; it has finished its generation and can be resumed
+
 
 class Failure(Exception):
     """The reason why a command cannot continue, with the remedy."""

@@ -13,13 +13,10 @@ import subprocess
 import tomllib
 import urllib.parse
 
-from common.command_line import Failure
+from common.command_line import NO_FITNESS, STOPPED, Failure
 
 from . import rows
 from .together import run_many, stop
-
-NO_FITNESS = 3  # exit status of a complete run in which no individual has a fitness
-STOPPED = 130  # exit status of a run that was asked to stop; it has finished its generation and can be resumed
 
 NO_ISLANDS = "runs with islands, which are several runs each, are not compared; leave the islands out"
 

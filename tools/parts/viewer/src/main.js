@@ -61,12 +61,6 @@ function topSpeedFact({ length, speed, limit }) {
   return fact("Top speed", `${short(limit)} m/s`, `is all that friction allows${lengths}${reached}`);
 }
 
-/** In how many of its other lives an individual kept its fitness; empty if it was not born again. */
-function otherLives({ trials }) {
-  const lives = trials.filter(({ trial }) => trial.startsWith("reborn"));
-  return lives.length > 0 ? `kept in ${lives.filter(({ held }) => held).length} of ${lives.length} other lives` : "";
-}
-
 /** Returns the facts of a run, each as {label, value, note}. */
 function factsOf(run) {
   const all = Object.values(run.statuses).reduce((sum, n) => sum + n, 0);
@@ -97,9 +91,7 @@ function factsOf(run) {
     fact(
       "The best, verified",
       marks === undefined ? "not yet" : marks.length > 0 ? marks.join(", ") : "held",
-      marks === undefined
-        ? "see evodevo verify"
-        : listed(marks.length > 0 ? "" : "neither artefact nor passive", otherLives(run.best.verification)),
+      run.best?.verification?.verdict ?? "see evodevo verify",
     ),
   ];
 }
