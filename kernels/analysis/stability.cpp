@@ -310,13 +310,6 @@ double contact_stiffness(const Scene& scene) {
   return scene.floor->stiffness * (1 + std::pow(scene.floor->steepest(), 2));
 }
 
-double largest_in_any_shape(const Body& body, const Scene& scene, const Limit& limit, double wanted) {
-  const double floor = contact_stiffness(scene);
-  if (wanted * std::sqrt(disc_bound(body, limit.at(wanted), floor)) <= limit.oscillation) return wanted;
-  const double known = limit.dt(disc_bound(body, {1, 0}, floor), disc_bound(body, {0, 1}, 0));
-  return at_most(wanted, largest_dt_of(matrix_in_any_shape(body, floor), limit, known));
-}
-
 }  // namespace
 
 double oscillation_limit(Method method) {
@@ -370,7 +363,11 @@ double largest_dt(const Body& body, std::span<const Vec3> positions, Method meth
 }
 
 double largest_dt_in_any_shape(const Body& body, const Scene& scene, Method method, double wanted) {
-  return largest_in_any_shape(body, scene, Limit(method, is_damped(body)), wanted);
+  const Limit limit(method, is_damped(body));
+  const double floor = contact_stiffness(scene);
+  if (wanted * std::sqrt(disc_bound(body, limit.at(wanted), floor)) <= limit.oscillation) return wanted;
+  const double known = limit.dt(disc_bound(body, {1, 0}, floor), disc_bound(body, {0, 1}, 0));
+  return at_most(wanted, largest_dt_of(matrix_in_any_shape(body, floor), limit, known));
 }
 
 double safe_dt(const Body& body, const Scene& scene, Method method) {
@@ -384,7 +381,7 @@ double safe_dt(const Body& body, const Scene& scene, Method method) {
   const Limit limit(method, is_damped(body));
   const double margin = method == Method::rk4 || is_damped_everywhere(body) ? spring_margin : undamped_margin;
   const double wanted = dt / margin;
-  double springs = largest_in_any_shape(body, scene, limit, wanted);
+  double springs = largest_dt_in_any_shape(body, scene, method, wanted);
   if (limit.has_dashpots && rate > 0) springs = 1 / (1 / springs + rate / limit.rate);  // the rates add up
   return springs == wanted ? dt : margin * springs;
 }
