@@ -27,7 +27,7 @@ Shown newborn(const Evaluation& evaluation, const Individual& individual) {
   const Newborn newborn{individual.id, individual.born, &individual.genome};
   BuiltBody built = std::move(evaluation.birth.build({&newborn, 1}).front());
   if (!built.failure.empty()) return {{}, "invalid, " + built.failure};
-  return {{std::move(built.body), std::nullopt}, ""};
+  return {{std::move(built.body), std::nullopt, std::move(built.identities)}, ""};
 }
 
 Shown matured(const Evaluation& evaluation, const Newborn& newborn, const Scenario* scenario) {
@@ -36,7 +36,7 @@ Shown matured(const Evaluation& evaluation, const Newborn& newborn, const Scenar
   const Result& result = lives.front().result;
   if (!lives.front().alive()) return {{}, std::string(name(result.status)) + ", " + result.reason};
   LivingBody& living = lives.front().living;
-  return {{std::move(living.body), std::move(living.state)}, ""};
+  return {{std::move(living.body), std::move(living.state), living.numbers.identities()}, ""};
 }
 
 int body(const Given& given) {

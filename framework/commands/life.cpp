@@ -41,6 +41,8 @@ Json to_json(const Event& event, const std::vector<Narrated>& operators) {
     json["measure"] = measure.name;
     json["unit"] = measure.unit;
   }
+  if (event.identity) json["identity"] = *event.identity;
+  if (event.mother) json["mother"] = *event.mother;
   if (event.position) json["position"] = {event.position->x, event.position->y, event.position->z};
   if (event.rest_length) json["rest_length"] = *event.rest_length;
   if (event.material)
@@ -85,6 +87,7 @@ void print(const Event& event, const std::vector<Narrated>& operators) {
     std::cout << growth_text(*event.growth);
   else
     fmt::print(std::cout, "{} {}", who(event), event.what);
+  if (event.mother) fmt::print(std::cout, ", a daughter of mass {}", *event.mother);
   if (event.cause) print(*event.cause, op->measure(event.cause->list));
   if (const auto& at = event.position) fmt::print(std::cout, " at ({:.4g}, {:.4g}, {:.4g}) m", at->x, at->y, at->z);
   if (event.rest_length) fmt::print(std::cout, ", rest length {:.4g} m", *event.rest_length);
@@ -166,9 +169,10 @@ class LifeReport {
     const Evaluation evaluation(experiment_, *simulator);
     const Newborn newborn = for_resimulation(archive, experiment_, individual_, simulator->device());
     std::vector<Life> lives = evaluation.birth.of({&newborn, 1}, scenario_);
-    born_ = lives.front().living.body;
+    const LivingBody newborn_body = lives.front().living;
+    born_ = newborn_body.body;
     timed("simulating the development again", [&] { evaluation.development.run(lives, [](double) {}); });
-    LifeEvents told = life_events(born_, lives.front().result.record);
+    LifeEvents told = life_events(newborn_body, lives.front().result.record);
     matured_ = std::move(told.matured);
     events_ = std::move(told.events);
   }

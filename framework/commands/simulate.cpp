@@ -92,6 +92,7 @@ Life life_of(const std::string& file, const Experiment& experiment, const Evalua
   GivenBody given = read_body(file);
   Life life = given.state ? evaluation.birth.amid_life(std::move(given.body), std::move(*given.state))
                           : evaluation.birth.of(std::move(given.body));
+  life.living.numbers = MassNumbers(std::move(given.identities));
   if (life.alive()) return life;
   const bool is_step = life.result.reason.starts_with("unstable dt");
   throw ConfigError(

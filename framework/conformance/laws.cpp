@@ -183,6 +183,85 @@ void bodies_stay_sound(const Subject& subject, std::uint64_t seed) {
   if (!edited) throw Skipped("it edits none of the bodies");
 }
 
+/// The edits of an operator by identities: in which order they were made, and what their indices are, makes no
+/// difference. Those that concern the mass of the identity `whose` or its springs are left out.
+std::multiset<Numbers> by_identity(const Edits& edits, const DevoContext& context, std::uint64_t whose) {
+  std::multiset<Numbers> listed;
+  const std::size_t masses = context.body.masses.size();
+  const auto identity = [&](std::uint32_t mass) {
+    return mass < masses ? context.identity(mass) : edits.new_masses.at(mass - masses).identity.value();
+  };
+  const auto list = [&](double what, std::vector<std::uint32_t> whom, const Numbers& how) {
+    std::vector<std::uint64_t> names;
+    for (const std::uint32_t mass : whom) names.push_back(identity(mass));
+    if (std::ranges::find(names, whose) != names.end()) return;
+    std::ranges::sort(names);
+    Numbers numbers{what};
+    for (const std::uint64_t name : names) append(numbers, {double(name >> 32), double(name & 0xffffffff)});
+    append(numbers, how);
+    listed.insert(std::move(numbers));
+  };
+  const auto spring = [&](double what, std::uint32_t s, const Numbers& how) {
+    list(what, {context.body.springs.at(s).a, context.body.springs.at(s).b}, how);
+  };
+  const auto of = [](const Material& m) { return Numbers{m.stiffness, m.amplitude, m.frequency, m.phase, m.damping}; };
+  for (const std::uint32_t s : edits.removed_springs) spring(0, s, {});
+  for (const std::uint32_t mass : edits.removed_masses) list(1, {mass}, {});
+  for (const ChangedSpring& s : edits.changed_springs) {
+    Numbers how{s.rest_length.value_or(-1), s.stiffness_factor.value_or(-1)};
+    append(how, of(s.material.value_or(Material{})));
+    spring(2, s.spring, how);
+  }
+  for (std::uint32_t i = 0; i < edits.new_masses.size(); ++i) {
+    const NewMass& mass = edits.new_masses[i];
+    list(3, {static_cast<std::uint32_t>(masses) + i},
+         {mass.position.x, mass.position.y, mass.position.z, mass.mass, double(mass.material)});
+  }
+  for (const NewSpring& s : edits.new_springs) {
+    Numbers how{s.rest_length.value_or(-1), s.stiffness_factor, s.phase_growth};
+    append(how, of(s.material));
+    list(4, {s.a, s.b}, how);
+  }
+  return listed;
+}
+
+/// Checks what Traits::locality claims, for bodies of 200 masses.
+void changes_stay_local(const Subject& subject, std::uint64_t seed) {
+  const auto op = create<Devo>(subject);
+  const std::optional<std::uint32_t> claimed = op->traits().locality;
+  if (!claimed) throw Skipped("its traits say nothing of locality");
+  constexpr std::uint32_t masses = 200;
+  bool edited = false;
+  for (std::uint32_t input = 0; input < 8; ++input) {
+    SampleLife whole = sample_life(subject, *op, seed, input, masses);
+    whole.inherits = true;
+    Rng which = stream(seed, input, 3);
+    for (int trial = 0; trial < 8; ++trial) {
+      const std::uint32_t mass = which.below(masses);
+      const std::uint64_t whose = whole.living.numbers.identities()[mass];
+      const auto edits_of = [&](const SampleLife& life) {
+        const DevoContext context = life.context(op->observes());
+        Edits edits;
+        Rng rng = context.draws.stream("stream");
+        op->develop(context, edits, rng);
+        return by_identity(resolved(edits, context), context, whose);
+      };
+      const std::multiset<Numbers> with = edits_of(whole), without = edits_of(without_mass(whole, mass));
+      edited = edited || !with.empty();
+      std::vector<Numbers> only_with, only_without;
+      std::ranges::set_difference(with, without, std::back_inserter(only_with));
+      std::ranges::set_difference(without, with, std::back_inserter(only_without));
+      const std::size_t others = std::max(only_with.size(), only_without.size());
+      if (others > *claimed)
+        throw Violation(numbered("body", input) + ": without mass " + std::to_string(mass) + ", " +
+                        std::to_string(others) + " edits that do not concern it differ, of " +
+                        std::to_string(with.size()) + "; its trait locality claims at most " +
+                        std::to_string(*claimed));
+    }
+  }
+  if (!edited) throw Skipped("it edits none of the bodies");
+}
+
 // ---- fitness ----
 
 /// Checks that scores do not change if a body is moved horizontally (heights are relative to the floor). The distances
@@ -251,7 +330,7 @@ std::vector<Case> laws_of(std::string_view kind) {
   if (kind == Mutation::kind)
     return {{"nothing", nothing_stays_nothing}, {"changes", mutates}, {"layout", mutants_fit}};
   if (kind == Crossover::kind) return {{"twins", twins_stay_twins}, {"changes", crosses}, {"layout", children_fit}};
-  if (kind == Devo::kind) return {{"bodies", bodies_stay_sound}};
+  if (kind == Devo::kind) return {{"bodies", bodies_stay_sound}, {"locality", changes_stay_local}};
   if (kind == Fitness::kind)
     return {{"objectives", scores_every_objective}, {"translation", unmoved_by_translation}, {"nan", honest_about_nan}};
   return selection_laws();

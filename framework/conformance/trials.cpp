@@ -228,7 +228,10 @@ DevoContext SampleLife::context(const RecordRequest& request) const {
                       .mass_memory = living.memory.front().masses.view("mass"),
                       .spring_memory = living.memory.front().springs.view("spring"),
                       .first_time = 0.5,
-                      .last_time = 10};
+                      .last_time = 10,
+                      .identities = living.numbers.identities(),
+                      .daughters = living.numbers.daughters(),
+                      .draws = Draws(philox, mixed(4, static_cast<std::uint64_t>(cycle)), 5, inherits)};
   show_records(living, request, context);
   return context;
 }
@@ -250,7 +253,8 @@ void add_experience(const Devo& op, bool has_lived, Rng& rng, LivingBody& living
 
 }  // namespace
 
-SampleLife sample_life(const Subject& subject, const Devo& op, std::uint64_t seed, std::uint32_t input) {
+SampleLife sample_life(const Subject& subject, const Devo& op, std::uint64_t seed, std::uint32_t input,
+                       std::optional<std::uint32_t> count) {
   Rng rng = stream(seed, input), own_rng = stream(seed, input, 2);
   SampleLife life;
   const SampleGenomes genomes = sample_genomes(subject, op, 0);
@@ -266,7 +270,7 @@ SampleLife sample_life(const Subject& subject, const Devo& op, std::uint64_t see
   const auto materials = static_cast<std::uint32_t>(body.materials.size());
   body.base_materials = materials;
   // every eighth body has only two masses, a case that operators often do not consider
-  const std::uint32_t masses = input % 8 == 7 ? 2 : 12 + rng.below(24);
+  const std::uint32_t masses = count ? *count : input % 8 == 7 ? 2 : 12 + rng.below(24);
   const bool masses_have_materials = input % 2 == 0;
   for (std::uint32_t i = 0; i < masses; ++i) {
     const Vec3 position{rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(0, 1)};
@@ -290,12 +294,22 @@ SampleLife sample_life(const Subject& subject, const Devo& op, std::uint64_t see
     life.living.tension.push_back(stress * rng.uniform(-1, 1));
   }
   life.bounds = bounding_box(life.living.state.position);
+  life.inherits = input % 16 >= 8;
+  std::vector<std::uint64_t> identities;
+  for (std::uint64_t i = 0; i < masses; ++i) identities.push_back(mixed(7, i));
+  life.living.numbers = MassNumbers(std::move(identities));
   Rng experience_rng = stream(seed, input, 100);
   add_experience(op, input % 4 >= 2, experience_rng, life.living);
   if (input % 4 >= 2)
     for (Spring& spring : body.springs) spring.stiffness_factor = experience_rng.uniform(0.5, 2);
   for (Spring& spring : body.springs) spring.phase_growth = static_cast<float>(experience_rng.uniform(-1, 1));
   return life;
+}
+
+SampleLife without_mass(const SampleLife& life, std::uint32_t mass) {
+  SampleLife without = life;
+  apply(Edits{.removed_masses = {mass}}, without.living);
+  return without;
 }
 
 Numbers try_out(const Subject& subject, const Operator& op, std::uint64_t seed, std::uint32_t input) {

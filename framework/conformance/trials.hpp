@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -42,13 +43,18 @@ struct SampleLife {
   Genome own;  ///< genes that the operator owns
   int cycle = 1;
   bool resets = false;
+  bool inherits = false;  ///< whether draws are inherited
 
   /// Returns the context with only those records that `request` asks for.
   DevoContext context(const RecordRequest& request) const;
 };
-/// Returns a random life. `input` determines whether the masses have materials, whether the body has many masses or
-/// only two, and whether the operator remembers only zeros, as at birth, or numbers from 0 to 1.
-SampleLife sample_life(const Subject& subject, const Devo& op, std::uint64_t seed, std::uint32_t input);
+/// Returns a random life of a body of 12 to 35 masses, or of so many. `input` determines whether the masses have
+/// materials, whether the body has many masses or only two, whether the operator remembers only zeros, as at birth, or
+/// numbers from 0 to 1, and whether draws are inherited.
+SampleLife sample_life(const Subject& subject, const Devo& op, std::uint64_t seed, std::uint32_t input,
+                       std::optional<std::uint32_t> masses = std::nullopt);
+/// Returns the same life without a mass and its springs; everything else that is known stays as it is.
+SampleLife without_mass(const SampleLife& life, std::uint32_t mass);
 
 /// Calls the functions of an operator with the input that has the number `input`, and returns all results as numbers.
 /// Throws Violation if the operator changes inputs that it may only read.

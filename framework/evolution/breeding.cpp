@@ -7,7 +7,7 @@
 #include "base/genome_sections.hpp"
 #include "base/philox.hpp"
 #include "base/text.hpp"
-#include "evodevo/helpers/pareto.hpp"
+#include "evodevo/helpers/selection/pareto.hpp"
 #include "evolution/clones.hpp"
 #include "evolution/selection_table.hpp"
 #include "threads/parallel.hpp"

@@ -61,4 +61,9 @@ std::vector<Migrant> founders(const Experiment& experiment) {
   return migrants;
 }
 
+std::optional<std::int64_t> development_seed_of_start(const Experiment& experiment) {
+  if (experiment.start.empty()) return std::nullopt;
+  return read_settings(opened(experiment).record("experiment"), experiment.start).development.seed;
+}
+
 }  // namespace evodevo

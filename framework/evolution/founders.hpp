@@ -1,6 +1,7 @@
 // The individuals of another run with whom a run begins.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "evolution/population.hpp"
@@ -13,5 +14,9 @@ namespace evodevo {
 /// there is no such run, if nobody lives in it, if its genomes are not those of the experiment, or if the experiment's
 /// selection operator makes all children itself, and would not know these.
 std::vector<Migrant> founders(const Experiment& experiment);
+
+/// Returns the seed of development of the run that `[experiment] start` names, with which its robots developed; nothing
+/// if it names none. Throws ConfigError if there is no such run.
+std::optional<std::int64_t> development_seed_of_start(const Experiment& experiment);
 
 }  // namespace evodevo

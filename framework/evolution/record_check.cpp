@@ -62,6 +62,7 @@ void check_notes(const Archive& archive, const Experiment& experiment) {
 }
 
 /// Returns the lines of an experiment, each with its table, without those that say where the experiment is simulated.
+/// Those of [experiment] come first, because defaults of other tables follow from them.
 std::vector<std::string> lines_that_matter(const Experiment& experiment) {
   std::vector<std::string> lines;
   std::istringstream text(experiment.resolved);
@@ -73,6 +74,7 @@ std::vector<std::string> lines_that_matter(const Experiment& experiment) {
         table == "[simulation]" && (line.starts_with("device = ") || line.starts_with("threads = "));
     if (!line.empty() && line != table && !is_of_machine) lines.push_back(table + " " + line);
   }
+  std::ranges::stable_partition(lines, [](const std::string& line) { return line.starts_with("[experiment]"); });
   return lines;
 }
 

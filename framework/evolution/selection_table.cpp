@@ -6,7 +6,7 @@
 #include <tuple>
 #include <unordered_map>
 
-#include "evodevo/helpers/pareto.hpp"
+#include "evodevo/helpers/selection/pareto.hpp"
 
 namespace evodevo {
 namespace {

@@ -202,6 +202,11 @@ Experiment read_experiment(std::string_view text, const ExperimentSource& source
   return compose(with_overrides(parse_toml(text, source.file), source), source);
 }
 
+bool gives_key(const ExperimentSource& source, std::string_view key) {
+  const toml::table root = with_overrides(parse_toml_file(source.file), source);
+  return root.at_path(key).node() != nullptr;
+}
+
 std::vector<Experiment> read_islands(const ExperimentSource& source) {
   const toml::table root = with_overrides(parse_toml_file(source.file), source);
   Experiment whole = compose(root, source);

@@ -31,6 +31,7 @@ struct Varied {
 /// A devo operator and the schedule of its applications.
 struct Scheduled {
   std::unique_ptr<Devo> op;
+  std::string label;  ///< its own name; with a number if an earlier operator has the same
   Schedule schedule;
   std::optional<std::uint32_t> own_section{};  ///< the section that it owns
 };
@@ -140,6 +141,8 @@ struct ExperimentSource {
 Experiment read_experiment(const ExperimentSource& source);
 /// Does the same with a text, such as Experiment::resolved in the record of a run.
 Experiment read_experiment(std::string_view text, const ExperimentSource& source);
+/// Returns whether the file or an override gives a key, such as "development.seed". Throws ConfigError.
+bool gives_key(const ExperimentSource& source, std::string_view key);
 /// Reads the experiments of all islands of a run from a file, in the order of their numbers; without [islands], the one
 /// experiment of the run. Throws like read_experiment(), and ConfigError if the genomes of the islands differ.
 std::vector<Experiment> read_islands(const ExperimentSource& source);

@@ -75,6 +75,7 @@ Settings read_settings(TomlReader& top, Bodies bodies, Warnings& warnings) {
   read_table(top, "experiment", true, [&](TomlReader& t) { declare_run(t, settings); });
   // a single newborn is a child, unless the experiment asks for a random individual
   if (settings.newborns() == 1 && !asks_for_random_individuals(top)) settings.random_individuals = 0;
+  settings.development.seed = settings.seed;
   read_island_settings(top, settings);
   read_materials(top, settings, warnings);
   visit_table(top, "encoding", false, [&](TomlReader& t) { declare_mass(t, settings); });

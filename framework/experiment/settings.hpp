@@ -53,12 +53,21 @@ enum class Accuracy { paper, fast, balanced, reference };
 template <>
 inline constexpr std::array<std::string_view, 4> names_of<Accuracy>{"paper", "fast", "balanced", "reference"};
 
+/// Whose random numbers of development an individual has. Inherited: they follow from the identities of masses
+/// (Draws in evodevo/devo.hpp), so that a child develops as its parents did where it is like them; individual: each
+/// individual has its own, as in the paper.
+enum class DrawsBy { inherited, individual };
+template <>
+inline constexpr std::array<std::string_view, 2> names_of<DrawsBy>{"inherited", "individual"};
+
 /// The development of a life. In each of `cycles` cycles, the body is simulated for `cycle_time`, then the devo
 /// operators are applied (paper, section IV-D).
 struct DevelopmentSettings {
   std::int64_t cycles = 0;
   double cycle_time = 1;  ///< simulated time of one cycle, s
   bool reset = false;     ///< whether bodies return to their rest positions after every cycle
+  DrawsBy draws = DrawsBy::inherited;
+  std::int64_t seed = 1;  ///< of inherited draws; one for all islands
   Control control = Control::off;
   Probe probe = Probe::exact;
   std::int64_t skip = 100;  ///< time steps from one tally to the next; paper, section IV-D1

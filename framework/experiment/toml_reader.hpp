@@ -76,6 +76,8 @@ class TomlReader final : public SettingsVisitor {
   toml::table empty_table() const;
   /// Returns the sub-table `name`; nullptr if it is absent.
   const toml::table* table(std::string_view name);
+  /// Returns whether the table has a key, without reading it.
+  bool has(std::string_view name) const { return table_.contains(name); }
   /// Returns the tables of the array `name`; empty if it is absent.
   std::vector<const toml::table*> tables(std::string_view name);
 

@@ -38,6 +38,15 @@ std::string throw_by_ground(const LivingBody& living, const Scene& scene) {
 
 }  // namespace
 
+void move_at_random(double most, const Draws& draws, Rng rng, LivingBody& living) {
+  for (std::size_t i = 0; i < living.state.position.size(); ++i) {
+    if (draws.inherited()) rng = draws.stream("offset", {living.numbers.identities().at(i)});
+    const auto offset = [&] { return most * (2 * rng.uniform() - 1); };
+    const double x = offset(), y = offset(), z = offset();
+    living.state.position[i] = living.state.position[i] + Vec3{x, y, z};
+  }
+}
+
 Blueprint decoded(const Experiment& experiment, const Genome& genome, CallSubject subject) {
   return call_operator(experiment.call_of(Encoding::kind, 0, subject), [&] {
     const Layout& layout = experiment.own_layouts.front();
@@ -105,7 +114,8 @@ Life Birth::life_of(BuiltBody built, State state, const Scene& scene) const {
     living.memory.push_back(memory_at_birth(names, built.mass_memory, built.body));
   living.body = std::move(built.body);
   living.state = std::move(state);
-  living.numbers = MassNumbers(living.body.masses.size());
+  living.numbers =
+      built.identities.empty() ? MassNumbers(living.body.masses.size()) : MassNumbers(std::move(built.identities));
   return life;
 }
 
@@ -124,13 +134,11 @@ void perturb(Life& life, const Experiment& experiment, std::uint32_t start) {
   constexpr double part = 1e-4;  // largest offset relative to the longest side
   State& state = life.living.state;
   const double most = part * bounding_box(state.position).longest_side();
-  Rng rng(philox, {static_cast<std::uint64_t>(experiment.seed), life.newborn.generation, life.newborn.id,
-                   rng_stream::perturbation + start});
-  const auto offset = [&] { return most * (2 * rng.uniform() - 1); };
-  for (Vec3& position : state.position) {
-    const double x = offset(), y = offset(), z = offset();
-    position = position + Vec3{x, y, z};
-  }
+  const Draws draws = draws_for(experiment, life.newborn, "perturbation", start);
+  move_at_random(most, draws,
+                 Rng(philox, {static_cast<std::uint64_t>(experiment.seed), life.newborn.generation, life.newborn.id,
+                              rng_stream::perturbation + start}),
+                 life.living);
 }
 
 }  // namespace evodevo

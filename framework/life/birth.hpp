@@ -46,6 +46,10 @@ class Birth {
   mutable BusyClock clock_;
 };
 
+/// Moves each mass along each axis by up to `most` metres at random: by its identity if draws are inherited, otherwise
+/// one mass after the other from `rng`.
+void move_at_random(double most, const Draws& draws, Rng rng, LivingBody& living);
+
 /// Perturbs a body: moves each mass along each axis at random by up to 1e-4 of the body's longest side. `start` (below
 /// 240) selects the RNG stream.
 void perturb(Life& life, const Experiment& experiment, std::uint32_t start);

@@ -180,6 +180,14 @@ void keep_memory(const std::vector<std::uint32_t>& kept, std::map<std::string, s
   }
 }
 
+/// Returns the identities of the masses that stay: those of the blueprint or, if it has none, their indices in it.
+std::vector<std::uint64_t> kept_identities(const std::vector<std::uint32_t>& kept,
+                                           const std::vector<std::uint64_t>& identities) {
+  std::vector<std::uint64_t> of_kept;
+  for (const std::uint32_t i : kept) of_kept.push_back(identities.empty() ? i : identities[i]);
+  return of_kept;
+}
+
 /// Completes the body of a blueprint whose neighbours have been joined.
 BuiltBody finish(Blueprint blueprint) {
   Body& body = blueprint.body;
@@ -191,6 +199,7 @@ BuiltBody finish(Blueprint blueprint) {
   for (Spring& spring : body.springs) spring.first_length = spring.rest_length;
   place_on_origin(body);
   keep_memory(built.kept, blueprint.mass_memory);
+  built.identities = kept_identities(built.kept, blueprint.identities);
   built.body = std::move(body);
   built.mass_memory = std::move(blueprint.mass_memory);
   return built;
@@ -213,6 +222,18 @@ std::optional<std::size_t> doubled_spring(const Body& body) {
     if (last == lower(spring) && (!twin || i < *twin)) twin = i;
   }
   return twin;
+}
+
+/// Throws if two masses have the same identity.
+void check_identities(const Blueprint& blueprint) {
+  std::vector<std::pair<std::uint64_t, std::size_t>> known;
+  for (const std::uint64_t identity : blueprint.identities) known.emplace_back(identity, known.size());
+  std::ranges::sort(known);
+  const auto twin = std::ranges::adjacent_find(known, {}, &std::pair<std::uint64_t, std::size_t>::first);
+  if (twin != known.end())
+    throw std::invalid_argument("masses " + std::to_string(twin->second) + " and " +
+                                std::to_string(std::next(twin)->second) + " both have the identity " +
+                                std::to_string(twin->first) + "; expected different identities");
 }
 
 /// Throws unless the blueprint gives a finite number for each mass under every name of its memory.
@@ -298,6 +319,8 @@ void check_blueprint(const Blueprint& blueprint, const EncodingContext& context)
   require_one_for_each_mass(blueprint.paired_at, "positions to pair at");
   require_one_for_each_mass(blueprint.sizes, "sizes");
   require_one_for_each_mass(blueprint.origins, "origins");
+  require_one_for_each_mass(blueprint.identities, "identities");
+  check_identities(blueprint);
   check_memory(blueprint);
 }
 

@@ -18,6 +18,7 @@ struct BuiltBody {
   std::string failure = "";              ///< empty if there is a body
   std::vector<std::uint32_t> kept = {};  ///< indices that the body's masses have in the blueprint, ascending
   std::map<std::string, std::vector<double>> mass_memory = {};  ///< what the body's masses remember at birth, by name
+  std::vector<std::uint64_t> identities = {};                   ///< of the body's masses, as the encoding gave them
   std::size_t in_other_pieces = 0;  ///< number of masses that were left out although springs joined them to others
 };
 

@@ -26,11 +26,11 @@ class BodyReader {
     read_masses(root);
     read_springs(root);
     if (!is_alive_ && root.contains("start_energy")) refuse_of_newborn("start_energy");
-    if (!is_alive_) return {std::move(body_), std::nullopt};
+    if (!is_alive_) return {std::move(body_), std::nullopt, std::move(identities_)};
     state_.position = rest_positions(body_);
     state_.time = input_.number(root, "", "time", 0);
     if (root.contains("start_energy")) state_.start_energy = input_.number(root, "", "start_energy", lowest);
-    return {std::move(body_), std::move(state_)};
+    return {std::move(body_), std::move(state_), std::move(identities_)};
   }
 
  private:
@@ -47,12 +47,16 @@ class BodyReader {
 
   void read_masses(const Json& root) {
     input_.each(root, "masses", [&](const Json& item, const std::string& at) {
-      input_.expect(item, at, {"position", "velocity", "mass", "material"});
+      input_.expect(item, at, {"position", "velocity", "mass", "material", "identity"});
       Mass mass;
       mass.rest = vector(item, at, "position");
       mass.mass = input_.number(item, at, "mass", 0);
       if (item.contains("material"))
         mass.material = static_cast<std::int32_t>(input_.index(item, at, "material", body_.materials.size()));
+      const bool has_identity = item.contains("identity");
+      if (has_identity && !item.at("identity").is_number_unsigned())
+        input_.fail(at + ".identity", "expected a whole number from 0 to 18446744073709551615");
+      identities_.push_back(has_identity ? item.at("identity").get<std::uint64_t>() : body_.masses.size());
       body_.masses.push_back(mass);
       if (!is_alive_ && item.contains("velocity")) refuse_of_newborn(at + ".velocity");
       state_.velocity.push_back(item.contains("velocity") ? vector(item, at, "velocity") : Vec3{});
@@ -92,6 +96,7 @@ class BodyReader {
   JsonInput input_;
   Body body_;
   State state_;
+  std::vector<std::uint64_t> identities_;
   bool is_alive_ = false;  ///< whether the body is in the middle of its life
 };
 
@@ -105,6 +110,7 @@ Json masses_json(const GivenBody& given) {
     if (given.state) written["velocity"] = numbers(given.state->velocity[i]);
     written["mass"] = mass.mass;
     if (mass.material != no_material) written["material"] = mass.material;
+    if (!given.identities.empty()) written["identity"] = given.identities[i];
     masses.push_back(std::move(written));
   }
   return masses;

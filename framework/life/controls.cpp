@@ -1,6 +1,7 @@
 #include "life/controls.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <map>
 
 #include "base/materials.hpp"
@@ -23,39 +24,53 @@ std::optional<Material> mass_material(const Body& body, std::int32_t index) {
 /// Springs or masses, grouped by kind, to be drawn at random without replacement.
 class Pools {
  public:
-  /// Makes a pool for each of `kinds` kinds, and one for masses without a material.
-  explicit Pools(std::size_t kinds) : pools_(kinds + 1) {}
+  /// Makes a pool for each of `kinds` kinds, and one for masses without a material. With inherited draws,
+  /// `number(item)` decides: the item with the smallest number is drawn first.
+  Pools(std::size_t kinds, Chance& chance, std::function<double(std::uint32_t)> number)
+      : pools_(kinds + 1), chance_(chance), number_(std::move(number)) {}
 
   void add(std::int32_t kind, std::uint32_t item) {
-    pools_[index(kind)].push_back(item);
+    pools_[index(kind)].emplace_back(chance_.inherited() ? number_(item) : 0, item);
     ++left_;
+    is_sorted_ = !chance_.inherited();
   }
 
   /// Draws an item of this kind, or of any kind if no item of this one is left. Returns nullopt if no item is left.
-  std::optional<std::uint32_t> draw(std::int32_t kind, Rng& rng) {
+  std::optional<std::uint32_t> draw(std::int32_t kind) {
     if (left_ == 0) return std::nullopt;
+    if (!std::exchange(is_sorted_, true))
+      for (Pool& pool : pools_) std::ranges::sort(pool, std::greater());
     const std::size_t own = index(kind);
-    std::vector<std::uint32_t>& pool = own < pools_.size() && !pools_[own].empty() ? pools_[own] : any(rng);
-    std::swap(pool[rng.below(static_cast<std::uint32_t>(pool.size()))], pool.back());
-    const std::uint32_t item = pool.back();
+    Pool& pool = own < pools_.size() && !pools_[own].empty() ? pools_[own] : any();
+    if (!chance_.inherited())
+      std::swap(pool[chance_.rng().below(static_cast<std::uint32_t>(pool.size()))], pool.back());
+    const std::uint32_t item = pool.back().second;
     pool.pop_back();
     --left_;
     return item;
   }
 
  private:
+  using Pool = std::vector<std::pair<double, std::uint32_t>>;  ///< numbers and items
+
   static std::size_t index(std::int32_t kind) { return static_cast<std::size_t>(kind - no_material); }
 
   /// Returns the pool of an item that is drawn at random from all pools; each item is equally likely.
-  std::vector<std::uint32_t>& any(Rng& rng) {
-    std::uint32_t item = rng.below(static_cast<std::uint32_t>(left_));
+  Pool& any() {
+    if (chance_.inherited())
+      return *std::ranges::min_element(pools_, {},
+                                       [](const Pool& pool) { return pool.empty() ? 2 : pool.back().first; });
+    std::uint32_t item = chance_.rng().below(static_cast<std::uint32_t>(left_));
     auto pool = pools_.begin();
     for (; item >= pool->size(); ++pool) item -= static_cast<std::uint32_t>(pool->size());
     return *pool;
   }
 
-  std::vector<std::vector<std::uint32_t>> pools_;
+  std::vector<Pool> pools_;
+  Chance& chance_;
+  std::function<double(std::uint32_t)> number_;
   std::size_t left_ = 0;
+  bool is_sorted_ = true;
 };
 
 /// The pairs of masses that are joined.
@@ -78,17 +93,17 @@ class Partners {
 /// Places one amount of change at random in a body.
 class RandomPlacement {
  public:
-  RandomPlacement(const Amount& amount, const DevoContext& context, std::size_t& surplus, Rng& rng)
+  RandomPlacement(const Amount& amount, const DevoContext& context, std::size_t& surplus, Chance& chance)
       : amount_(amount),
         context_(context),
         body_(context.body),
         numbers_(numbered(body_.materials)),
         kinds_(kinds_of(body_)),
         surplus_(surplus),
-        rng_(rng),
+        chance_(chance),
         mass_goes_(body_.masses.size(), 0),
         spring_goes_(body_.springs.size(), 0),
-        staying_springs_(kinds_.size()) {}
+        staying_springs_(kinds_.size(), chance, [this](std::uint32_t s) { return chance_.number_of(s, "spring"); }) {}
 
   Edits edits() {
     out_.growth = amount_.growth;
@@ -102,10 +117,10 @@ class RandomPlacement {
 
  private:
   void remove_masses() {
-    Pools masses(body_.materials.size());
+    Pools masses(body_.materials.size(), chance_, [this](std::uint32_t i) { return context_.draw(i, "mass"); });
     for (std::uint32_t i = 0; i < body_.masses.size(); ++i) masses.add(body_.masses[i].material, i);
     for (const std::optional<Material>& material : amount_.masses_gone)
-      if (const auto mass = masses.draw(index_in_body(material), rng_)) {
+      if (const auto mass = masses.draw(index_in_body(material))) {
         out_.removed_masses.push_back(*mass);
         mass_goes_[*mass] = 1;
       }
@@ -113,7 +128,7 @@ class RandomPlacement {
 
   void remove_springs() {
     for (const std::int32_t kind : springs_due())
-      if (const auto spring = staying_springs_.draw(kind, rng_)) {
+      if (const auto spring = staying_springs_.draw(kind)) {
         out_.removed_springs.push_back(*spring);
         spring_goes_[*spring] = 1;
       }
@@ -135,7 +150,7 @@ class RandomPlacement {
         ++surplus_;
     }
     const std::size_t made_up = std::min(surplus_, due.size());
-    rng_.shuffle(due);
+    if (made_up > 0 || !chance_.inherited()) chance_.stream("due").shuffle(due);
     due.resize(due.size() - made_up);
     surplus_ -= made_up;
     return due;
@@ -143,7 +158,7 @@ class RandomPlacement {
 
   void change_springs() {
     for (const Amount::SpringChange& change : amount_.springs_changed)
-      if (const auto spring = staying_springs_.draw(kind_in_body(change.before), rng_)) {
+      if (const auto spring = staying_springs_.draw(kind_in_body(change.before))) {
         ChangedSpring& changed = out_.changed_springs.emplace_back(ChangedSpring{.spring = *spring});
         changed.material = change.material;
         changed.stiffness_factor = change.stiffness_factor;
@@ -154,7 +169,8 @@ class RandomPlacement {
   void add_masses() {
     const auto& [low, high] = context_.bounds;
     for (const Amount::MassCome& mass : amount_.masses_come) {
-      const Vec3 position{rng_.uniform(low.x, high.x), rng_.uniform(low.y, high.y), rng_.uniform(low.z, high.z)};
+      Rng& rng = chance_.stream({"place", out_.new_masses.size()});
+      const Vec3 position{rng.uniform(low.x, high.x), rng.uniform(low.y, high.y), rng.uniform(low.z, high.z)};
       const std::int32_t material = index_in_body(mass.material);
       const bool is_known = material < static_cast<std::int32_t>(body_.materials.size());
       out_.new_masses.push_back({position, mass.mass, is_known ? material : no_material});
@@ -169,13 +185,16 @@ class RandomPlacement {
     Partners partners(body_.masses.size() + out_.new_masses.size());
     for (std::uint32_t s = 0; s < spring_goes_.size(); ++s)
       if (spring_goes_[s] == 0) partners.join(body_.springs[s].a, body_.springs[s].b);
-    const auto end = [&](const std::optional<std::uint32_t>& come) {
+    const Ring ring = chance_.inherited() ? chance_.ring_of(staying) : Ring();
+    const auto end = [&](const std::optional<std::uint32_t>& come, const Tag& tag) {
       if (come) return static_cast<std::uint32_t>(body_.masses.size() + *come);
-      return staying[rng_.below(static_cast<std::uint32_t>(staying.size()))];
+      return chance_.inherited() ? ring.at(context_.draw(tag))
+                                 : staying[chance_.rng().below(static_cast<std::uint32_t>(staying.size()))];
     };
+    std::uint64_t attempts = 0;
     for (const Amount::SpringCome& spring : amount_.springs_come)
-      for (std::size_t attempt = 0; attempt < attempts_per_spring; ++attempt) {
-        const std::uint32_t first = end(spring.a), second = end(spring.b);
+      for (std::size_t attempt = 0; attempt < attempts_per_spring; ++attempt, ++attempts) {
+        const std::uint32_t first = end(spring.a, {"first", attempts}), second = end(spring.b, {"second", attempts});
         const auto [a, b] = std::minmax(first, second);
         if (a == b || !(norm(position(b) - position(a)) > 0) || partners.joined(a, b)) continue;
         partners.join(a, b);
@@ -223,7 +242,7 @@ class RandomPlacement {
   MaterialNumbers numbers_;  ///< indices of the body's materials
   Kinds kinds_;
   std::size_t& surplus_;
-  Rng& rng_;
+  Chance& chance_;
   Edits out_;
   std::vector<std::uint8_t> mass_goes_, spring_goes_;
   Pools staying_springs_;
@@ -261,8 +280,8 @@ Amount amount_of(const Edits& edits, const Body& body, std::uint32_t op) {
   return amount;
 }
 
-Edits at_random_places(const Amount& amount, const DevoContext& context, std::size_t& surplus, Rng& rng) {
-  return RandomPlacement(amount, context, surplus, rng).edits();
+Edits at_random_places(const Amount& amount, const DevoContext& context, std::size_t& surplus, Chance& chance) {
+  return RandomPlacement(amount, context, surplus, chance).edits();
 }
 
 std::vector<Amount> Yoke::amounts_after(int cycle) {

@@ -1,6 +1,7 @@
 // The control random-places: it changes a body as much as the operators would, but at random places.
 #pragma once
 
+#include "evodevo/helpers/chance.hpp"
 #include "life/life_record.hpp"
 
 namespace evodevo {
@@ -51,10 +52,13 @@ Amount amount_of(const Edits& edits, const Body& body, std::uint32_t op);
 ///   left out.
 /// - Growth stays the same, because it applies to all springs.
 ///
+/// With inherited draws, all of this follows from the identities of masses, so that the places are as much inherited as
+/// those that the operators choose.
+///
 /// The springs of a removed mass count as removed springs. `surplus` is the number of springs that have been removed in
 /// this way beyond the amounts, now and at earlier applications. To compensate, that many fewer springs are removed as
 /// soon as possible. Limits that an operator observes, such as those on the degree of masses, do not apply here.
-Edits at_random_places(const Amount& amount, const DevoContext& context, std::size_t& surplus, Rng& rng);
+Edits at_random_places(const Amount& amount, const DevoContext& context, std::size_t& surplus, Chance& chance);
 
 /// The amounts of change in one life. A second life with the same start is yoked to it: at each application, the second
 /// life is changed by the same amounts.

@@ -1,7 +1,7 @@
 #include "life/development.hpp"
 
 #include <algorithm>
-#include <numeric>
+#include <deque>
 
 #include "analysis/energy.hpp"
 #include "analysis/ground.hpp"
@@ -28,6 +28,20 @@ auto energy_of(const Life& life) {
 }
 
 }  // namespace
+
+struct DevelopmentLoop::Choices {
+  /// `id` is that of the stream of an individual.
+  Choices(const DevelopmentLoop& loop, const Life& life, int cycle, std::string_view what, std::uint32_t id)
+      : context(loop.context_of(life, cycle, {}, {})), rng(loop.stream_of(life, {}, id)), chance(context, rng) {
+    context.draws = draws_for(loop.experiment_, life.newborn, what, static_cast<std::uint64_t>(cycle));
+  }
+  Choices(const Choices&) = delete;  // `chance` refers to the others
+  Choices& operator=(const Choices&) = delete;
+
+  DevoContext context;
+  Rng rng;
+  Chance chance;
+};
 
 double DevelopmentLoop::duration() const {
   const DevelopmentSettings& development = experiment_.development;
@@ -106,9 +120,15 @@ void DevelopmentLoop::simulate_cycle(std::span<Life> lives, int cycle, const Rec
   Stretch stretch = windows_.in_cycle(cycle);
   stretch.contact = request.contact;
   const auto tally = [&](std::span<Task> tasks, std::span<Life* const> alive) {
-    std::vector<Rng> random;
-    for (const Life* life : alive) random.push_back(stream(*life, rng_stream::stress_tallies(cycle)));
-    run_with_tallies(simulation_.simulator(), tasks, static_cast<std::uint64_t>(development.skip), random);
+    std::deque<Choices> choices;
+    for (const Life* life : alive)
+      choices.emplace_back(*this, *life, cycle, "stress tallies", rng_stream::stress_tallies(cycle));
+    const auto order = [&](std::size_t i, std::uint64_t number) {
+      Chance& chance = choices[i].chance;
+      return chance.inherited() ? chance.springs_by_number({"tally", number})
+                                : random_order(choices[i].context.body.springs.size(), chance.rng());
+    };
+    run_with_tallies(simulation_.simulator(), tasks, static_cast<std::uint64_t>(development.skip), order);
   };
   const auto record = [&](std::span<Task> tasks, std::span<Life* const>) {
     simulation_.simulator().run(tasks, of_springs);
@@ -145,25 +165,33 @@ void DevelopmentLoop::apply_operators(Life& life, int cycle) const {
 }
 
 void DevelopmentLoop::shuffle_records(Life& life, int cycle) const {
-  const auto shuffle = [&](const auto& lists, std::size_t items, std::uint32_t id) {
-    std::vector<std::size_t> order(items);
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    stream(life, id).shuffle(order);
+  const auto shuffle = [&](const auto& lists, std::size_t items, std::uint32_t id, const auto& by_number) {
+    Choices choices(*this, life, cycle, "shuffle", id);
+    std::vector<std::uint32_t> from;  // of each item, whose values it gets
+    if (choices.chance.inherited()) {
+      const std::vector<std::uint32_t> ring = by_number(choices.chance);
+      from.resize(items);
+      for (std::size_t i = 0; i < items; ++i) from[ring[i]] = ring[(i + 1) % items];
+    } else {
+      from = random_order(items, choices.chance.rng());
+    }
     for (const auto list : lists) {
       std::vector<double>& record = life.living.*list;
       if (record.empty()) continue;
       std::vector<double> shuffled;
-      for (const std::size_t i : order) shuffled.push_back(record[i]);
+      for (const std::uint32_t i : from) shuffled.push_back(record[i]);
       record = std::move(shuffled);
     }
   };
   const Body& body = life.living.body;
-  shuffle(SpringRecords::lists, body.springs.size(), rng_stream::stress_shuffle(cycle));
-  shuffle(MassRecords::lists, body.masses.size(), rng_stream::mass_shuffle(cycle));
+  shuffle(SpringRecords::lists, body.springs.size(), rng_stream::stress_shuffle(cycle),
+          [](Chance& chance) { return chance.springs_by_number("spring"); });
+  shuffle(MassRecords::lists, body.masses.size(), rng_stream::mass_shuffle(cycle),
+          [](Chance& chance) { return chance.masses_by_number("mass"); });
 }
 
 void DevelopmentLoop::apply_operator(Life& life, int cycle, std::size_t index) const {
-  const auto& [op, schedule, own_section] = experiment_.devo[index];
+  const auto& [op, label, schedule, own_section] = experiment_.devo[index];
   const auto genes_of = [&](std::uint32_t section) {
     return part_of(*life.newborn.genome, experiment_.layout, {section}, experiment_.own_layouts[section]);
   };
@@ -172,7 +200,8 @@ void DevelopmentLoop::apply_operator(Life& life, int cycle, std::size_t index) c
   DevoContext context = context_of(life, cycle, schedule, devo_request(experiment_, index), genome, own);
   context.mass_memory = memory.masses.view("mass");
   context.spring_memory = memory.springs.view("spring");
-  Rng rng = stream(life, rng_stream::devo(index, cycle));
+  context.draws = draws_for(experiment_, life.newborn, label, static_cast<std::uint64_t>(cycle));
+  Rng rng = stream_of(life, context.draws, rng_stream::devo(index, cycle));
   const auto develop = [&] {
     Edits edits;
     op->develop(context, edits, rng);
@@ -185,15 +214,19 @@ void DevelopmentLoop::apply_operator(Life& life, int cycle, std::size_t index) c
 }
 
 void DevelopmentLoop::change_as_in(Yoke& yoke, Life& life, int cycle) const {
-  Rng rng = stream(life, rng_stream::random_places(cycle));
+  Rng rng = stream_of(life, {}, rng_stream::random_places(cycle));
   for (const Amount& amount : yoke.amounts_after(cycle)) {
-    const DevoContext context = context_of(life, cycle, {}, {});
-    make(change_by(at_random_places(amount, context, yoke.surplus, rng), amount.op, context), life);
+    DevoContext context = context_of(life, cycle, {}, {});
+    context.draws = draws_for(experiment_, life.newborn, "random places of " + experiment_.devo.at(amount.op).label,
+                              static_cast<std::uint64_t>(cycle));
+    Chance chance(context, rng);
+    make(change_by(at_random_places(amount, context, yoke.surplus, chance), amount.op, context), life);
   }
   shed_loose_pieces(life, cycle);
 }
 
-Rng DevelopmentLoop::stream(const Life& life, std::uint32_t id) const {
+Rng DevelopmentLoop::stream_of(const Life& life, const Draws& draws, std::uint32_t id) const {
+  if (draws.inherited()) return draws.stream("stream");
   return Rng(philox, {static_cast<std::uint64_t>(experiment_.seed), life.newborn.generation, life.newborn.id, id});
 }
 
@@ -215,7 +248,9 @@ DevoContext DevelopmentLoop::context_of(const Life& life, int cycle, const Sched
                       .layout = experiment_.own_layouts.front(),
                       .own = own,
                       .first_time = static_cast<double>(schedule.from) * development.cycle_time,
-                      .last_time = static_cast<double>(schedule.last(development.cycles)) * development.cycle_time};
+                      .last_time = static_cast<double>(schedule.last(development.cycles)) * development.cycle_time,
+                      .identities = living.numbers.identities(),
+                      .daughters = living.numbers.daughters()};
   show_records(living, request, context);
   return context;
 }

@@ -62,6 +62,10 @@ class DevelopmentLoop {
   /// Returns the context that an operator sees after a cycle.
   DevoContext context_of(const Life& life, int cycle, const Schedule& schedule, const RecordRequest& request,
                          const Genome& genome = no_genes, const Genome& own = no_genes) const;
+  /// The random choices of what changes a body, or of what is recorded of it.
+  struct Choices;
+  /// Returns the stream from which the operator with this index, which does not draw by identity, draws after a cycle.
+  Rng stream_of(const Life& life, const Draws& draws, std::uint32_t id) const;
   /// Applies a change and records it.
   void make(Change change, Life& life) const;
   /// Removes the pieces of the body that development has torn off.
@@ -78,9 +82,6 @@ class DevelopmentLoop {
   /// Returns the box around the positions at which the next cycle starts, cut off below at the height of the highest
   /// point of the floor.
   Box bounds(const Life& life) const;
-  /// Returns the RNG stream `id` of a life.
-  Rng stream(const Life& life, std::uint32_t id) const;
-
   const Experiment& experiment_;
   const LifeSimulation& simulation_;
   const Windows& windows_;

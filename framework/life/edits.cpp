@@ -224,8 +224,7 @@ class Editor {
   void move_masses() {
     if (edits_.removed_masses.empty() && edits_.new_masses.empty()) {
       new_index_.resize(old_masses());
-      std::iota(new_index_.begin(), new_index_.end(), 0u);
-      return;
+      return std::iota(new_index_.begin(), new_index_.end(), 0u);
     }
     std::vector<Mass> masses;
     std::vector<Vec3> positions, velocities;
@@ -278,6 +277,8 @@ class Editor {
     if (mass.material < no_material || mass.material >= static_cast<std::int64_t>(old_materials_))
       refuse("adds a mass of material " + std::to_string(mass.material) + ", but the body has " +
              std::to_string(old_materials_) + " materials");
+    if (mass.mother && *mass.mother >= old_masses())
+      refuse("adds a daughter of mass " + std::to_string(*mass.mother) + ", which does not exist");
   }
 
   /// Spreads the payload of removed masses evenly over the masses that carry payload, or over all if none does.
@@ -374,14 +375,10 @@ Edits resolved(const Edits& edits, const DevoContext& context) {
   Edits result = edits;
   put_in_order(result.removed_masses, result.causes.removed_masses);
   put_in_order(result.removed_springs, result.causes.removed_springs);
+  derive_identities(result.new_masses, context);
   for (NewSpring& spring : result.new_springs)
     if (!spring.rest_length) spring.rest_length = forceless_length(spring, edits, context);
   return result;
-}
-
-bool only_grows(const Edits& edits) {
-  return edits.growth && edits.removed_springs.empty() && edits.removed_masses.empty() &&
-         edits.changed_springs.empty() && edits.new_masses.empty() && edits.new_springs.empty();
 }
 
 void apply(const Edits& resolved, LivingBody& living) {

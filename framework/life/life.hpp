@@ -15,7 +15,7 @@
 
 namespace evodevo {
 
-/// A genome to be evaluated. The random numbers of its life depend on the run's seed, the generation and the id alone.
+/// A genome to be evaluated. What the random numbers of its life depend on is told at draws_for().
 struct Newborn {
   std::uint32_t id = 0;
   std::uint32_t generation = 0;
@@ -23,7 +23,13 @@ struct Newborn {
   /// For a re-simulation: the changes to apply to the body instead of calling the operators.
   std::optional<LifeRecord> record = std::nullopt;
   std::string recorded_in = {};  ///< the run and individual that the record belongs to, for messages
+  std::uint32_t life = 0;        ///< number of a life with other inherited draws; 0: the life in a run
 };
+
+/// Returns the random numbers of one part of a newborn's life, such as an application of a devo operator. `what` names
+/// the part, and `number` tells parts of the same name apart. Inherited draws depend on these two, the seed of development
+/// and the number of the life; others on these two, the run's seed, the generation and the id.
+Draws draws_for(const Experiment& experiment, const Newborn& newborn, std::string_view what, std::uint64_t number);
 
 /// A score of a matured body in one repeat of one scenario.
 struct TestScore {

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <stdexcept>
 
@@ -37,6 +38,8 @@ class Writer {
     for (const NewMass& mass : edits.new_masses) {
       raw(mass.position), raw(mass.mass);
       whole(static_cast<std::uint64_t>(mass.material - no_material));
+      whole(mass.mother ? std::uint64_t{*mass.mother} + 1 : 0);
+      raw(mass.identity.value());
     }
     whole(edits.new_springs.size());
     for (const NewSpring& spring : edits.new_springs) {
@@ -123,6 +126,8 @@ class Reader {
       const std::uint32_t material = index();
       if (material > std::numeric_limits<std::int32_t>::max()) fail();
       mass.material = static_cast<std::int32_t>(material) + no_material;
+      if (const std::uint32_t mother = index(); mother > 0) mass.mother = mother - 1;
+      mass.identity = raw<std::uint64_t>();
     }
     for (std::uint32_t left = index(); left > 0; --left) {
       NewSpring& spring = edits.new_springs.emplace_back();
@@ -224,19 +229,57 @@ std::vector<Change> LifeRecord::changes() const {
   return changes;
 }
 
-MassNumbers::MassNumbers(std::size_t born) : numbers_(born), next_(static_cast<std::uint32_t>(born)) {
+namespace {
+
+std::vector<std::uint64_t> indices(std::size_t count) {
+  std::vector<std::uint64_t> indices(count);
+  std::iota(indices.begin(), indices.end(), std::uint64_t{0});
+  return indices;
+}
+
+}  // namespace
+
+MassNumbers::MassNumbers(std::size_t born) : MassNumbers(indices(born)) {}
+
+MassNumbers::MassNumbers(std::vector<std::uint64_t> identities)
+    : numbers_(identities.size()),
+      daughters_(identities.size()),
+      identities_(std::move(identities)),
+      next_(static_cast<std::uint32_t>(numbers_.size())) {
   std::iota(numbers_.begin(), numbers_.end(), 0u);
 }
 
-std::uint32_t MassNumbers::add() { return numbers_.emplace_back(next_++); }
+std::uint32_t MassNumbers::add(const NewMass& mass) {
+  if (mass.mother) ++daughters_.at(*mass.mother);
+  daughters_.push_back(0);
+  identities_.push_back(mass.identity.value());
+  return numbers_.emplace_back(next_++);
+}
 
 void MassNumbers::remove(const std::vector<std::uint32_t>& masses) {
-  for (auto mass = masses.rbegin(); mass != masses.rend(); ++mass) numbers_.erase(numbers_.begin() + *mass);
+  for (auto mass = masses.rbegin(); mass != masses.rend(); ++mass) {
+    numbers_.erase(numbers_.begin() + *mass);
+    daughters_.erase(daughters_.begin() + *mass);
+    identities_.erase(identities_.begin() + *mass);
+  }
 }
 
 void MassNumbers::apply(const Edits& edits) {
-  for (std::size_t i = 0; i < edits.new_masses.size(); ++i) add();
+  for (const NewMass& mass : edits.new_masses) add(mass);
   remove(edits.removed_masses);
+}
+
+void derive_identities(std::vector<NewMass>& masses, const DevoContext& context) {
+  std::map<std::uint32_t, std::uint64_t> borne;  // daughters by these edits, by mother
+  std::uint64_t newcomers = 0;
+  for (NewMass& mass : masses) {
+    const bool has_mother = mass.mother && *mass.mother < context.body.masses.size();
+    const std::uint64_t before =
+        !has_mother ? newcomers++
+                    : borne[*mass.mother]++ + (context.daughters.empty() ? 0 : context.daughters[*mass.mother]);
+    if (!mass.identity)
+      mass.identity = mixed(has_mother ? context.identity(*mass.mother) : context.draws.origin(), before);
+  }
 }
 
 }  // namespace evodevo

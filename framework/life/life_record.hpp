@@ -42,25 +42,36 @@ class LifeRecord {
   MaterialNumbers materials_;  ///< materials written so far; later changes refer to them by number
 };
 
-/// Numbers of masses that stay the same throughout a life, while indices change. The number of a mass at birth is its
-/// index; masses that are added later get the next numbers.
+/// What names the masses of a body throughout a life, while indices change.
+///
+/// - The number of a mass at birth is its index; masses that are added later get the next numbers.
+/// - Its identity (DevoContext::identity()) is the same in all individuals that have inherited the mass.
 class MassNumbers {
  public:
+  /// Masses that have their indices for identities.
   explicit MassNumbers(std::size_t born);
+  explicit MassNumbers(std::vector<std::uint64_t> identities);
 
-  /// Adds a mass after the others and returns its number.
-  std::uint32_t add();
-  /// Removes masses, given by their indices in ascending order.
-  void remove(const std::vector<std::uint32_t>& masses);
-  /// Adds the new masses of a change, then removes its removed masses.
+  /// Adds the new masses of a change, which resolved() has returned, then removes its removed masses.
   void apply(const Edits& edits);
+  /// Does one after the other: adds a mass after the others and returns its number; removes masses, given by their
+  /// indices in ascending order.
+  std::uint32_t add(const NewMass& mass);
+  void remove(const std::vector<std::uint32_t>& masses);
 
   /// The numbers of all masses, in the order of their indices. This order is ascending.
   const std::vector<std::uint32_t>& numbers() const { return numbers_; }
+  const std::vector<std::uint64_t>& identities() const { return identities_; }
+  /// The number of daughters that each mass has had (NewMass::mother).
+  const std::vector<std::uint32_t>& daughters() const { return daughters_; }
 
  private:
-  std::vector<std::uint32_t> numbers_;
+  std::vector<std::uint32_t> numbers_, daughters_;
+  std::vector<std::uint64_t> identities_;
   std::uint32_t next_;
 };
+
+/// Gives each of the new masses of an edit its identity, unless it has one.
+void derive_identities(std::vector<NewMass>& masses, const DevoContext& context);
 
 }  // namespace evodevo

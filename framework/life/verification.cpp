@@ -67,8 +67,10 @@ std::vector<Trial> reborn(const Experiment& experiment, Simulator& simulator, st
   const Evaluation evaluation(experiment, simulator, perturbed);
   std::vector<Newborn> newborns;  // without records, and of a generation that no run reaches
   for (const Champion& champion : champions)
-    newborns.push_back(
-        {champion.newborn.id, std::numeric_limits<std::uint32_t>::max() - start, champion.newborn.genome});
+    newborns.push_back({.id = champion.newborn.id,
+                        .generation = std::numeric_limits<std::uint32_t>::max() - start,
+                        .genome = champion.newborn.genome,
+                        .life = start + 1});
   Matured matured = evaluation.matured(evaluation.birth.of(newborns), unwatched);
   evaluation.measurement.run(matured, unwatched);
   return trials_of("reborn-" + std::to_string(start + 1), matured.lives);

@@ -19,7 +19,7 @@ std::optional<Cause> cause_at(const Causes& causes, Causes::List list, std::size
 /// Collects the events of a life. Its changes must be added in the order in which they were made.
 class EventLog {
  public:
-  explicit EventLog(Body born) : body_(std::move(born)), masses_(body_.masses.size()) {}
+  explicit EventLog(const LivingBody& born) : body_(born.body), masses_(born.numbers) {}
 
   void add(const Change& change) {
     const Edits& edits = change.edits;
@@ -34,9 +34,12 @@ class EventLog {
       event.stiffness = stiffness_of(spring);
     }
     for (std::size_t i = 0; i < edits.new_masses.size(); ++i) {
-      Event& event = add_event(change, "come", {masses_.add()});
+      const NewMass& mass = edits.new_masses[i];
+      Event& event = add_event(change, "come", {masses_.add(mass)});
       event.cause = cause_at(edits.causes, &Causes::new_masses, i);
-      event.position = edits.new_masses[i].position;
+      event.position = mass.position;
+      event.identity = mass.identity;
+      if (mass.mother) event.mother = number(*mass.mother);
     }
     for (std::size_t i = 0; i < edits.new_springs.size(); ++i) {
       const NewSpring& spring = edits.new_springs[i];
@@ -69,9 +72,11 @@ class EventLog {
       if (goes(body_.springs[s].a) || goes(body_.springs[s].b)) gone[s] = std::nullopt;
     for (std::size_t i = 0; i < edits.removed_springs.size(); ++i)
       gone[edits.removed_springs[i]] = cause_at(edits.causes, &Causes::removed_springs, i);
-    for (std::size_t i = 0; i < edits.removed_masses.size(); ++i)
-      add_event(change, "gone", {number(edits.removed_masses[i])}).cause =
-          cause_at(edits.causes, &Causes::removed_masses, i);
+    for (std::size_t i = 0; i < edits.removed_masses.size(); ++i) {
+      Event& event = add_event(change, "gone", {number(edits.removed_masses[i])});
+      event.cause = cause_at(edits.causes, &Causes::removed_masses, i);
+      event.identity = masses_.identities().at(edits.removed_masses[i]);
+    }
     for (const auto& [spring, cause] : gone) add_event(change, "gone", ends(spring)).cause = cause;
   }
 
@@ -119,7 +124,7 @@ std::vector<Narrated> narrated_operators(const Experiment& experiment) {
   return operators;
 }
 
-LifeEvents life_events(const Body& born, const LifeRecord& record) {
+LifeEvents life_events(const LivingBody& born, const LifeRecord& record) {
   EventLog log(born);
   for (const Change& change : record.changes()) log.add(change);
   return {log.events(), log.body()};

@@ -37,11 +37,13 @@ struct Event {
   const char* what = "";              ///< "gone", "come", "changed" or "growth"
   std::vector<std::uint32_t> masses;  ///< number of the mass, or of the two masses of the spring; empty for growth
   std::optional<Growth> growth;
-  std::optional<Cause> cause;         ///< cause, if the operator requested this edit itself and gave a cause
-  std::optional<Vec3> position;       ///< position of a new mass, m
-  std::optional<double> rest_length;  ///< rest length of a new spring, or the new one of a changed spring, m
-  std::optional<Material> material;   ///< material of a new spring, or the new one of a changed spring
-  std::optional<double> stiffness;    ///< new stiffness of a spring that does not have that of its material, N/m
+  std::optional<Cause> cause;             ///< cause, if the operator requested this edit itself and gave a cause
+  std::optional<Vec3> position;           ///< position of a new mass, m
+  std::optional<std::uint64_t> identity;  ///< of a mass (DevoContext::identity())
+  std::optional<std::uint32_t> mother;    ///< number of the mass from which a new mass descends
+  std::optional<double> rest_length;      ///< rest length of a new spring, or the new one of a changed spring, m
+  std::optional<Material> material;       ///< material of a new spring, or the new one of a changed spring
+  std::optional<double> stiffness;        ///< new stiffness of a spring that does not have that of its material, N/m
 
   bool is_spring() const { return masses.size() == 2; }
 };
@@ -53,6 +55,6 @@ struct LifeEvents {
 };
 
 /// Returns the events of a life. `born` is the body at birth.
-LifeEvents life_events(const Body& born, const LifeRecord& record);
+LifeEvents life_events(const LivingBody& born, const LifeRecord& record);
 
 }  // namespace evodevo

@@ -7,6 +7,7 @@
 
 #include "evolution/breeding.hpp"
 #include "evolution/evolution.hpp"
+#include "evolution/record_check.hpp"
 #include "evolution/resimulation.hpp"
 #include "life/body_building.hpp"
 #include "report/diversity.hpp"
@@ -209,7 +210,8 @@ constexpr std::size_t most_champions = 40;  ///< number of champions that a page
 
 /// Returns the body of an individual at birth as a film of one shot, in the lowest precision; an empty film if it has
 /// no body.
-Json newborn_json(const Experiment& experiment, const Individual& individual) {
+Json newborn_json(const Archive& archive, const Experiment& experiment, const Individual& individual) {
+  check_genes(archive, experiment, individual);
   Blueprint blueprint = decoded(experiment, individual.genome, {.individual = individual.id});
   blueprint.origins.clear();
   BuiltBody built = build_body(blueprint);
@@ -226,11 +228,11 @@ Json champions_json(const Archive& archive, const Experiment& experiment, const 
     const BestSoFar& one = all[count < 2 ? 0 : i * (all.size() - 1) / (count - 1)];
     const bool has_life =
         std::ranges::any_of(actors, [&](const Actor& actor) { return actor.individual.id == one.individual; });
-    shown.push_back(
-        {{"individual", one.individual},
-         {"generation", one.born},
-         {"value", one.value},
-         {"film", has_life ? Json(nullptr) : newborn_json(experiment, archive.known_individual(one.individual))}});
+    shown.push_back({{"individual", one.individual},
+                     {"generation", one.born},
+                     {"value", one.value},
+                     {"film", has_life ? Json(nullptr)
+                                       : newborn_json(archive, experiment, archive.known_individual(one.individual))}});
   }
   return {{"count", all.size()}, {"shown", std::move(shown)}};
 }

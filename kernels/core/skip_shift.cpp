@@ -30,10 +30,14 @@ void refuse(Task& task, std::uint64_t skip) {
 
 }  // namespace
 
-void tally(const Body& body, const State& state, Rng& random, std::vector<double>& points) {
-  std::vector<std::uint32_t> order(body.springs.size());
+std::vector<std::uint32_t> random_order(std::size_t springs, Rng& random) {
+  std::vector<std::uint32_t> order(springs);
   std::iota(order.begin(), order.end(), 0u);
   random.shuffle(order);
+  return order;
+}
+
+void tally(const Body& body, const State& state, const std::vector<std::uint32_t>& order, std::vector<double>& points) {
   std::vector<double> forces;
   for (const std::uint32_t s : order) forces.push_back(force(body, state, body.springs[s]));
   const std::size_t groups = std::min(most_tally_groups, order.size() / 2);
@@ -46,18 +50,19 @@ void tally(const Body& body, const State& state, Rng& random, std::vector<double
   }
 }
 
-void run_with_tallies(Simulator& simulator, std::span<Task> tasks, std::uint64_t skip, std::span<Rng> random) {
+void run_with_tallies(Simulator& simulator, std::span<Task> tasks, std::uint64_t skip, const TallyOrder& order) {
   for (Task& task : tasks) {
     task.clear({.stress = true}, task.body->springs.size());
     if (task.status == Status::ok && task.steps < skip) refuse(task, skip);
   }
+  std::vector<std::uint64_t> tallies(tasks.size());
   const auto next_steps = [&](std::size_t) { return skip; };
   const auto look = [&](std::size_t i, const Task& piece) {
     Task& task = tasks[i];
     if (task.status != Status::ok)
       task.clear({}, 0);
     else if (piece.steps == skip)
-      tally(*task.body, *task.state, random[i], task.stress);
+      tally(*task.body, *task.state, order(i, tallies[i]++), task.stress);
   };
   run_in_pieces(simulator, tasks, {}, next_steps, look);
 }

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "evodevo/helpers/adaptation.hpp"
+#include "evodevo/helpers/chance.hpp"
 #include "evodevo/helpers/materials.hpp"
 #include "evodevo/helpers/partners.hpp"
 
@@ -64,7 +65,7 @@ class Table {
 };
 
 /// Does what masses want to do, and writes it to edits. Masses act in the order of their outputs, largest first, ties
-/// by index. One that a limit holds back gives its turn to the next.
+/// by DevoContext::rank(). One that a limit holds back gives its turn to the next.
 class MassActs {
  public:
   MassActs(const ActLimits& limits, const DevoContext& context, const Table& out, Edits& edits)
@@ -107,11 +108,11 @@ class MassActs {
   }
 
   /// Each mass divides; its daughter lies on the side that is away from the centre of its partners.
-  void divide_masses(Rng& rng) {
+  void divide_masses(Chance& chance) {
     each_willing(divide, [&](std::uint32_t mother) {
       const bool has_room = static_cast<std::int64_t>(masses()) < limits_.masses;
       if (!has_room || !can_get_one(mother) || partners_.of(mother).empty()) return false;
-      const Vec3 position = place_beside(mother, rng);
+      const Vec3 position = place_beside(mother, chance);
       return !is_crowded(position) && bear(mother, position);
     });
   }
@@ -119,7 +120,7 @@ class MassActs {
   /// Each mass stiffens its springs if its output is positive, and softens them if it is negative.
   void change_stiffness() {
     std::vector<double> push(body_.masses.size());
-    Order order(body_.masses.size(), [&](std::uint32_t i) { return std::abs(out_.at(i, stiffen)); });
+    Order order(context_, [&](std::uint32_t i) { return std::abs(out_.at(i, stiffen)); });
     for (std::int64_t acted = 0; acted < limits_.masses_per_action && !order.empty(); ++acted) {
       const std::uint32_t mass = order.next();
       push[mass] = out_.at(mass, stiffen);
@@ -138,6 +139,12 @@ class MassActs {
 
  private:
   std::size_t masses() const { return body_.masses.size() + edits_.new_masses.size(); }
+  /// The number by which ties between the springs of a mass are broken, smallest first: with inherited draws the
+  /// identity of the other mass, otherwise the index of the spring.
+  std::uint64_t rank_at(std::uint32_t mass, std::uint32_t spring) const {
+    const Spring& s = body_.springs[spring];
+    return context_.draws.inherited() ? context_.identity(s.a == mass ? s.b : s.a) : spring;
+  }
   bool can_lose_one(std::uint32_t mass) const { return springs_[mass] > limits_.least_springs; }
   bool can_get_one(std::uint32_t mass) const { return springs_[mass] < limits_.most_springs; }
 
@@ -148,28 +155,28 @@ class MassActs {
   class Order {
    public:
     template <class Key>
-    Order(std::size_t masses, const Key& key) {
-      for (std::uint32_t i = 0; i < masses; ++i)
-        if (const double value = key(i); value > 0) left_.emplace_back(value, ~i);  // of equals, the first index wins
+    Order(const DevoContext& context, const Key& key) {
+      for (std::uint32_t i = 0; i < context.body.masses.size(); ++i)  // of equals, the lowest rank wins
+        if (const double value = key(i); value > 0) left_.emplace_back(value, ~context.rank(i), i);
       std::make_heap(left_.begin(), left_.end());
     }
     bool empty() const { return left_.empty(); }
     std::uint32_t next() {
       std::pop_heap(left_.begin(), left_.end());
-      const std::uint32_t mass = ~left_.back().second;
+      const std::uint32_t mass = std::get<2>(left_.back());
       left_.pop_back();
       return mass;
     }
 
    private:
-    std::vector<std::pair<double, std::uint32_t>> left_;
+    std::vector<std::tuple<double, std::uint64_t, std::uint32_t>> left_;
   };
 
   /// Calls act(mass), which returns whether the mass has acted, for the masses whose output is positive, until as many
   /// have acted as may.
   template <class Act>
   void each_willing(Action action, const Act& act) {
-    Order order(body_.masses.size(), [&](std::uint32_t i) { return out_.at(i, action); });
+    Order order(context_, [&](std::uint32_t i) { return out_.at(i, action); });
     std::int64_t acted = 0;
     for (std::int64_t tried = 0; acted < limits_.masses_per_action && !order.empty(); ++tried) {
       if (tried == tries_per_action * limits_.masses_per_action) return;
@@ -177,34 +184,36 @@ class MassActs {
     }
   }
 
-  /// Returns the spring of a mass with the least stress among those that both of their masses can lose; ties by index.
-  /// A stress of NaN counts as the largest.
+  /// Returns the spring of a mass with the least stress among those that both of their masses can lose; ties by
+  /// rank_at(). A stress of NaN counts as the largest.
   std::optional<std::uint32_t> least_stressed_that_may_go(std::uint32_t mass) const {
     std::optional<std::uint32_t> found;
-    double least = 0;
+    std::pair<double, std::uint64_t> least;
     for (const std::uint32_t s : partners_.springs_of(mass)) {
       if (gone_[s] || !can_lose_one(body_.springs[s].a) || !can_lose_one(body_.springs[s].b)) continue;
       const double stress =
           std::isnan(context_.stress[s]) ? std::numeric_limits<double>::infinity() : context_.stress[s];
-      if (found && !(stress < least)) continue;
+      const std::pair key(stress, rank_at(mass, s));
+      if (found && !(key < least)) continue;
       found = s;
-      least = stress;
+      least = key;
     }
     return found;
   }
 
-  /// Returns the nearest mass that another one can be joined to, if there is one; ties by index.
+  /// Returns the nearest mass that another one can be joined to, if there is one; ties by
+  /// DevoContext::rank().
   std::optional<std::uint32_t> nearest_free(std::uint32_t mass) const {
     std::optional<std::uint32_t> found;
-    double least = std::numeric_limits<double>::infinity();
+    std::pair least(std::numeric_limits<double>::infinity(), std::uint64_t{0});
     const Vec3 here = context_.position(mass);
     for (std::uint32_t i = 0; i < body_.masses.size(); ++i) {
       const Vec3 way = context_.position(i) - here;
-      const double distance = dot(way, way);
-      if (!(distance > 0 && distance < least) || !can_get_one(i) || partners_.joined(mass, i) ||
+      const std::pair key(dot(way, way), context_.rank(i));
+      if (!(key.first > 0 && key < least) || !can_get_one(i) || partners_.joined(mass, i) ||
           reached_.contains(std::minmax(mass, i)))
         continue;
-      least = distance;
+      least = key;
       found = i;
     }
     return found;
@@ -217,13 +226,15 @@ class MassActs {
   };
 
   /// Returns the tissue of a new spring: the mean of the materials of its masses or, if one has none, the tissue of the
-  /// first spring of `mass`; nothing if that is air, or if there is no spring.
+  /// first spring of `mass` by rank_at(); nothing if that is air, or if there is no spring.
   std::optional<Tissue> tissue_between(std::uint32_t mass, std::uint32_t other) const {
     std::optional<Tissue> tissue;
     if (const auto mixed = material_between(body_, body_.masses[mass].material, body_.masses[other].material)) {
       tissue = {*mixed};
     } else if (const auto own = partners_.springs_of(mass); !own.empty()) {
-      const Spring& model = body_.springs[own.front()];
+      const Spring& model =
+          body_
+              .springs[*std::ranges::min_element(own, {}, [&](std::uint32_t spring) { return rank_at(mass, spring); })];
       tissue = {body_.materials[model.material], model.phase_growth};
     }
     return tissue && !is_air(tissue->material) ? tissue : std::nullopt;
@@ -238,7 +249,7 @@ class MassActs {
 
   /// Returns the position of a daughter: away from the centre of the mother's partners, but not below the floor. If the
   /// mother is at their centre, the direction is random.
-  Vec3 place_beside(std::uint32_t mother, Rng& rng) const {
+  Vec3 place_beside(std::uint32_t mother, Chance& chance) const {
     const Vec3 here = context_.position(mother);
     Vec3 away;
     double lengths = 0;
@@ -249,7 +260,10 @@ class MassActs {
     }
     if (!(lengths > 0) || !std::isfinite(lengths)) return here;
     // what rounding leaves of a sum of zero is no direction
-    if (!(norm(away) > 1e-9 * lengths)) away = lengths * Vec3{rng.normal(), rng.normal(), rng.normal()};
+    if (!(norm(away) > 1e-9 * lengths)) {
+      Rng& rng = chance.stream("direction", {context_.identity(mother)});
+      away = lengths * Vec3{rng.normal(), rng.normal(), rng.normal()};
+    }
     const double distance = limits_.distance * lengths / static_cast<double>(partners_.of(mother).size());
     Vec3 position = here + distance / norm(away) * away;
     position.z = std::max(position.z, context_.bounds.low.z);
@@ -276,7 +290,7 @@ class MassActs {
     if (!to_mother) return false;
     const auto daughter = static_cast<std::uint32_t>(masses());
     const double cause = out_.at(mother, divide);
-    edits_.new_masses.push_back({position, context_.mass, body_.masses[mother].material});
+    edits_.new_masses.push_back({position, context_.mass, body_.masses[mother].material, mother});
     edits_.causes.new_masses.push_back(cause);
     for (std::size_t m = actions; m < out_.columns(); ++m) edits_.mass_memory.push_back(out_.at(mother, m));
     join(mother, daughter, *to_mother, cause);

@@ -14,16 +14,18 @@ class MassGrowth final : public evodevo::Devo {
     arrival_.declare(p);
   }
 
+  evodevo::Traits traits() const override { return {.locality = 60}; }
   evodevo::RecordRequest observes() const override { return arrival_.request(); }
   evodevo::Measure measure(evodevo::Causes::List) const override { return arrival_.measure.measure(); }
 
   void develop(const evodevo::DevoContext& context, evodevo::Edits& edits, evodevo::Rng& rng) const override {
     if (context.body.springs.empty()) return;
     const std::int64_t room = limit_ - static_cast<std::int64_t>(context.body.masses.size());
-    evodevo::Arrivals arrivals(arrival_, context);
+    evodevo::Chance chance(context, rng);
+    evodevo::Arrivals arrivals(arrival_, context, chance);
     for (std::int64_t i = 0; i < std::min(masses_, room); ++i)
-      if (!arrivals.find_position(rng)) break;
-    arrivals.come(edits, rng);
+      if (!arrivals.find_position()) break;
+    arrivals.come(edits);
   }
 
  private:

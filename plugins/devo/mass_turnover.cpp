@@ -23,6 +23,7 @@ class MassTurnover final : public evodevo::Devo {
     arrival_.declare(p);
   }
 
+  evodevo::Traits traits() const override { return {.locality = 60}; }
   evodevo::RecordRequest observes() const override { return arrival_.request(); }
   evodevo::Measure measure(evodevo::Causes::List list) const override {
     if (list == &evodevo::Causes::removed_masses) return {"degree", "springs"};
@@ -31,31 +32,36 @@ class MassTurnover final : public evodevo::Devo {
 
   void develop(const DevoContext& context, Edits& edits, Rng& rng) const override {
     const std::vector<std::int64_t> degree = evodevo::degrees(context.body);
-    const auto leaving = poorest(degree, rng);
+    evodevo::Chance chance(context, rng);
+    const auto leaving = poorest(degree, context, chance);
     if (leaving.empty() || context.body.springs.empty()) return;
 
-    evodevo::Arrivals arrivals(arrival_, context);
+    evodevo::Arrivals arrivals(arrival_, context, chance);
     std::vector<std::uint32_t> removed;
     for (const std::uint32_t mass : leaving) {
       arrivals.set_staying(mass, false);
-      if (arrivals.find_position(rng))
+      if (arrivals.find_position())
         removed.push_back(mass);
       else
         arrivals.set_staying(mass, true);
     }
-    if (!arrivals.come(edits, rng)) return;
+    if (!arrivals.come(edits)) return;
     edits.removed_masses = removed;
     for (const std::uint32_t mass : removed) edits.causes.removed_masses.push_back(static_cast<double>(degree[mass]));
   }
 
  private:
   /// Returns the masses below the threshold that may be removed, fewest springs first, ties in random order.
-  std::vector<std::uint32_t> poorest(const std::vector<std::int64_t>& degree, Rng& rng) const {
+  std::vector<std::uint32_t> poorest(const std::vector<std::int64_t>& degree, const DevoContext& context,
+                                     evodevo::Chance& chance) const {
     std::vector<std::uint32_t> poor;
     for (std::uint32_t i = 0; i < degree.size(); ++i)
       if (degree[i] < threshold_) poor.push_back(i);
-    rng.shuffle(poor);
-    std::stable_sort(poor.begin(), poor.end(), [&](auto a, auto b) { return degree[a] < degree[b]; });
+    if (!chance.inherited()) chance.rng().shuffle(poor);
+    const auto key = [&](std::uint32_t mass) {
+      return std::pair(degree[mass], chance.inherited() ? context.draw(mass, "tie") : 0);
+    };
+    std::ranges::stable_sort(poor, {}, key);
     poor.resize(std::min({poor.size(), static_cast<std::size_t>(limit_), degree.size() / 2}));
     return poor;
   }

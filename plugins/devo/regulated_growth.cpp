@@ -122,7 +122,8 @@ class RegulatedGrowth final : public evodevo::Devo {
     evodevo::MassActs acts(limits_, context, out, edits);
     acts.let_springs_go();
     acts.reach_for_others();
-    acts.divide_masses(rng);
+    evodevo::Chance chance(context, rng);
+    acts.divide_masses(chance);
     acts.change_stiffness();
   }
 

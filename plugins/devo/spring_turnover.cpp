@@ -1,5 +1,6 @@
 // "Remove a chunk of the least stress springs and introduce as many new springs randomly" (paper, section IV-D2), or
 // "based on most stressed springs rather than randomly" (section VII).
+#include <numeric>
 #include <set>
 
 #include "evodevo/helpers/materials.hpp"
@@ -10,6 +11,7 @@
 namespace {
 
 using evodevo::Body;
+using evodevo::Chance;
 using evodevo::DevoContext;
 using evodevo::Edits;
 using evodevo::Material;
@@ -24,42 +26,94 @@ struct Candidate {
   std::optional<std::uint32_t> beside = {};  ///< the stressed spring beside which the new spring would lie, if any
 };
 
-/// Suggests pairs of masses for new springs.
+/// Suggests pairs of masses for new springs, one after the other. With inherited draws, the suggestion follows from its
+/// number and from identities alone.
 class Candidates {
  public:
   Candidates(const std::string& where, const DevoContext& context, std::span<const double> stress,
-             const Partners& partners, std::size_t count, Rng& rng)
-      : context_(context), partners_(partners) {
-    if (where == "most-stressed") most_stressed_ = most_stressed(stress, count, rng);
+             const Partners& partners, std::size_t count, Chance& chance)
+      : context_(context), partners_(partners), chance_(chance) {
+    if (where == "most-stressed") most_stressed_ = most_stressed(stress, count, chance);
     if (where == "by-stress") lottery_ = evodevo::StressLottery(stress);
+    if (where != "random" || !chance.inherited()) return;
+    std::vector<std::uint32_t> masses(context.body.masses.size());
+    std::iota(masses.begin(), masses.end(), 0u);
+    ring_ = chance.ring_of(masses);
   }
 
-  Candidate next(Rng& rng) {
-    if (!lottery_.empty()) return beside(lottery_.draw(rng), rng);
-    if (!most_stressed_.empty()) return beside(most_stressed_[turn_++ % most_stressed_.size()], rng);
+  Candidate next() {
+    const std::uint64_t number = turn_++;
+    if (!lottery_.empty()) {
+      const auto [spring, times] = lottery_.draw(chance_);
+      return beside(spring, times);
+    }
+    if (!most_stressed_.empty())
+      return beside(most_stressed_[number % most_stressed_.size()], number / most_stressed_.size());
+    if (chance_.inherited()) {
+      const std::uint32_t a = ring_.at(context_.draw({"first", number}));
+      return {std::minmax({a, ring_.at(context_.draw({"second", number}), a)})};
+    }
     const auto masses = static_cast<std::uint32_t>(context_.body.masses.size());
-    const std::uint32_t a = rng.below(masses);
-    std::uint32_t b = rng.below(masses - 1);
+    const std::uint32_t a = chance_.rng().below(masses);
+    std::uint32_t b = chance_.rng().below(masses - 1);
     if (b >= a) ++b;
-    return {std::minmax(a, b)};
+    return {std::minmax({a, b})};
   }
 
  private:
   /// Suggests a pair that closes a triangle with a spring: one end of the spring and a random partner of its other end.
-  /// If that partner is the first end itself, the pair consists of the spring's own two masses.
-  Candidate beside(std::uint32_t index, Rng& rng) const {
+  /// If that partner is the first end itself, the pair consists of the spring's own two masses. `round` tells several
+  /// suggestions for one spring apart.
+  Candidate beside(std::uint32_t index, std::uint64_t round) const {
     std::uint32_t from = context_.body.springs[index].a, past = context_.body.springs[index].b;
-    if (rng.chance(0.5)) std::swap(from, past);
-    const auto partners = partners_.of(past);
-    const std::uint32_t to = partners[rng.below(static_cast<std::uint32_t>(partners.size()))];
-    return {to == from ? std::minmax(from, past) : std::minmax(from, to), index};
+    if (chance_.inherited() && context_.identity(past) < context_.identity(from)) std::swap(from, past);
+    const bool swapped =
+        chance_.inherited() ? chance_.number_of(index, {"side", round}) < 0.5 : chance_.rng().chance(0.5);
+    if (swapped) std::swap(from, past);
+    const std::uint32_t to = chance_.one_of(
+        partners_.of(past),
+        {"partner", evodevo::mixed(evodevo::mixed(round, context_.identity(from)), context_.identity(past))});
+    return {to == from ? std::minmax({from, past}) : std::minmax({from, to}), index};
   }
 
   const DevoContext& context_;
   const Partners& partners_;
+  Chance& chance_;
   std::vector<std::uint32_t> most_stressed_;
   evodevo::StressLottery lottery_;
-  std::size_t turn_ = 0;
+  evodevo::Ring ring_;
+  std::uint64_t turn_ = 0;
+};
+
+/// The springs that leave, least stressed first, each of which gives way to one new spring.
+class Leaving {
+ public:
+  Leaving(std::vector<std::uint32_t> springs, Chance& chance)
+      : springs_(std::move(springs)), gone_(springs_.size(), false), chance_(chance) {}
+
+  /// Returns the spring that gives way to the next new one: the least stressed. If the new spring takes over its
+  /// material and draws are inherited, it is one that follows from `number` instead, so that one new spring more or
+  /// less leaves most of the others with the same material.
+  std::uint32_t next(bool hands_material_on, std::uint64_t number) {
+    while (gone_[first_]) ++first_;
+    place_ = first_;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = first_; hands_material_on && chance_.inherited() && i < springs_.size(); ++i) {
+      if (gone_[i]) continue;
+      const double drawn = chance_.number_of(springs_[i], {"leaves", number});
+      if (drawn < least) place_ = i;
+      least = std::min(least, drawn);
+    }
+    return springs_[place_];
+  }
+  /// Takes the spring that next() returned off the list.
+  void take() { gone_[place_] = true; }
+
+ private:
+  std::vector<std::uint32_t> springs_;
+  std::vector<bool> gone_;
+  std::size_t first_ = 0, place_ = 0;
+  Chance& chance_;
 };
 
 /// The number of springs stays the same: a spring is removed only if another can be added. A body in which every pair
@@ -79,6 +133,7 @@ class SpringTurnover final : public evodevo::Devo {
     measure_.declare(p);
   }
 
+  evodevo::Traits traits() const override { return {.locality = 60}; }
   evodevo::RecordRequest observes() const override { return measure_.request(); }
   evodevo::Measure measure(evodevo::Causes::List) const override { return measure_.measure(); }
 
@@ -87,22 +142,24 @@ class SpringTurnover final : public evodevo::Devo {
     const std::size_t count = std::min(body.springs.size(), static_cast<std::size_t>(springs_));
     if (count == 0 || body.masses.size() < 2) return;
     const std::vector<double> stress = measure_.of(context);
-    const auto leaving = least_stressed(stress, count, rng);
+    Chance chance(context, rng);
+    Leaving leaving(least_stressed(stress, count, chance), chance);
     const Partners partners(body);
-    Candidates candidates(where_, context, stress, partners, count, rng);
+    Candidates candidates(where_, context, stress, partners, count, chance);
     std::set<Pair> taken;
     // enough attempts to find free pairs even if only a few are left; the limit ends the search if there are none
-    for (std::size_t attempts = evodevo::attempts_per_spring * count; attempts > 0 && taken.size() < count;
-         --attempts) {
-      const auto [pair, beside] = candidates.next(rng);
+    const std::size_t attempts = evodevo::attempts_per_spring * count;
+    for (std::size_t attempt = 0; attempt < attempts && taken.size() < count; ++attempt) {
+      const auto [pair, beside] = candidates.next();
       const auto [a, b] = pair;
       if (partners.joined(a, b) || taken.contains(pair) || !(norm(context.position(b) - context.position(a)) > 0))
         continue;
-      const std::uint32_t leaves = leaving[taken.size()];
       const auto mixed = material_between(body, body.masses[a].material, body.masses[b].material);
+      const std::uint32_t leaves = leaving.next(!mixed, attempt);
       const evodevo::Spring& gone = body.springs[leaves];
       const Material material = mixed ? *mixed : body.materials[gone.material];
       if (is_air(material)) continue;
+      leaving.take();
       taken.insert(pair);
       edits.removed_springs.push_back(leaves);
       edits.causes.removed_springs.push_back(stress[leaves]);

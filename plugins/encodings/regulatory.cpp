@@ -48,7 +48,7 @@ class Embryo {
   Embryo(const Genome& genome, std::size_t count) : genome_(genome), products_(count), genes_of_(count) {
     for (const float* gene = genome.data(); gene != genome.data() + genome.size(); gene += Gene::size)
       ++genes_of_[static_cast<std::size_t>(gene[Gene::product])];
-    add({0, 0, 0}, std::vector<double>(products_));
+    add({0, 0, 0}, std::vector<double>(products_), 0);
   }
 
   /// Lets `steps` steps pass. In each, first all concentrations change at the same time, then cells divide. In the end,
@@ -64,6 +64,9 @@ class Embryo {
   std::size_t size() const { return sites_.size(); }
   const Site& site(std::size_t cell) const { return sites_[cell]; }
   double concentration(std::size_t cell, std::size_t product) const { return concentrations_[cell][product]; }
+  /// The identities of all cells: that of a daughter follows from her mother's and from how many daughters her mother
+  /// had before.
+  const std::vector<std::uint64_t>& identities() const { return identities_; }
 
   /// Calls function(cell) for each cell beside a cell, in a fixed order.
   template <class Function>
@@ -73,7 +76,9 @@ class Embryo {
   }
 
  private:
-  void add(const Site& site, std::vector<double> concentrations) {
+  void add(const Site& site, std::vector<double> concentrations, std::uint64_t identity) {
+    identities_.push_back(identity);
+    daughters_.push_back(0);
     cell_at_.emplace(site, sites_.size());
     sites_.push_back(site);
     concentrations_.push_back(std::move(concentrations));
@@ -117,7 +122,9 @@ class Embryo {
     const std::size_t cells = size();  // daughters divide from the next step on
     for (std::size_t cell = 0; cell < cells && size() < most_cells; ++cell)
       if (concentrations_[cell][divide] > 0)
-        if (const auto place = free_place(cell)) add(*place, std::vector<double>(concentrations_[cell]));
+        if (const auto place = free_place(cell))
+          add(*place, std::vector<double>(concentrations_[cell]),
+              evodevo::mixed(identities_[cell], daughters_[cell]++));
   }
 
   /// Returns the free site beside a cell that is nearest to the direction in which it divides; of equal sites, the one
@@ -143,6 +150,7 @@ class Embryo {
   std::vector<double> genes_of_;  ///< number of genes that make each product
   std::vector<Site> sites_;
   std::vector<std::vector<double>> concentrations_;
+  std::vector<std::uint64_t> identities_, daughters_;  ///< daughters_: the number of daughters of each cell
   std::map<Site, std::size_t> cell_at_;
 };
 
@@ -205,6 +213,7 @@ class Regulatory final : public evodevo::Encoding {
     join(embryo, blueprint.body);
     blueprint.origins.assign(embryo.size(), Vec3{});  // they all come from one cell
     blueprint.mass_memory = memories(embryo);
+    blueprint.identities = embryo.identities();
     return blueprint;
   }
 

@@ -1,5 +1,5 @@
 // Age-fitness Pareto optimisation (Schmidt & Lipson 2011; paper, section IV-F).
-#include "evodevo/helpers/pareto.hpp"
+#include "evodevo/helpers/selection/pareto.hpp"
 #include "evodevo/helpers/rows.hpp"
 #include "evodevo/plugin.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <set>
 
-#include "evodevo/helpers/pareto.hpp"
+#include "evodevo/helpers/selection/pareto.hpp"
 #include "evodevo/helpers/rows.hpp"
 #include "evodevo/helpers/selection/memory.hpp"
 #include "evodevo/plugin.hpp"

@@ -1,5 +1,5 @@
 // NSGA-II: non-dominated sorting and crowding (Deb et al. 2002).
-#include "evodevo/helpers/pareto.hpp"
+#include "evodevo/helpers/selection/pareto.hpp"
 #include "evodevo/helpers/rows.hpp"
 #include "evodevo/plugin.hpp"
 

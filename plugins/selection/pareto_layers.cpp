@@ -1,6 +1,6 @@
 // "A solution is considered better if it belongs to a higher layer, or if belongs to the same layer with higher
 // fitness. [...] During replacement, all solutions on the Pareto Front are exempt" (paper, section IV-F).
-#include "evodevo/helpers/pareto.hpp"
+#include "evodevo/helpers/selection/pareto.hpp"
 #include "evodevo/helpers/rows.hpp"
 #include "evodevo/plugin.hpp"
 

@@ -101,6 +101,7 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"bodies_beyond", {"body 0: ", "bounds"}},
         Broken{"bodies_memory", {"body 0, cycle 1: ", "Edits::mass_memory", "mass_memory()"}},
         Broken{"decoding_memory", {"mass_memory[\"stem\"]", "3 numbers", "2 masses"}},
+        Broken{"locality", {"body 0: without mass ", "locality", "at most 3"}},
         Broken{"bodies_growth", {"uses_growth()"}}, Broken{"translation", {"scores "}},
         Broken{"nan_hidden", {"scores 0"}}, Broken{"objectives", {"2 scores", "1 objectives"}},
         Broken{"objectives_nan", {"20 bodies", "finite scores"}}, Broken{"order", {"order of birth"}},
@@ -145,7 +146,7 @@ Outcomes special(const std::string& name, const Words& options = {}) {
 }
 
 TEST(Conformance, BlocksOfAnEncodingOfTheSameLibraryRecordsOfMassesAndMemoryAreTried) {
-  for (const std::string name : {"twigs", "feeling"}) expect_kept(special(name));
+  for (const std::string name : {"twigs", "feeling"}) expect_kept(special(name), "its traits say");
   const Outcomes bent = special("bend-twig");
   expect_kept(bent);
   EXPECT_THAT(bent.at("instances"), at_place("skipped ", "no parameters"));

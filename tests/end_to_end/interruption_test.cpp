@@ -95,7 +95,7 @@ std::int64_t refused_elders(const Archive& archive) {
 /// With this selection all parents die, so that elders come to the front whom nobody has verified yet.
 TEST_F(Interruption, ARunThatVerifiesItsFrontIsTheSameAfterKillsAndWithAnyThreads) {
   const auto verifying = [&](const std::string& folder, const std::string& threads) {
-    const Words values{"selection.name=comma", "experiment.verify_front=true"};
+    const Words values{"selection.name=comma", "experiment.verify_front=true", "development.draws=individual"};
     return run_command(folder, joined(setting(values), {"--threads", threads}), "1");
   };
   output_of(verifying("straight", "1"));

@@ -64,6 +64,12 @@ TEST_F(Start, ThePopulationIsBornAgainInAnotherScene) {
     return a.result.objectives == b.result.objectives;
   };
   EXPECT_FALSE(std::ranges::equal(home, std::span(away).first(6), is_same)) << "they are measured in the new scene";
+
+  // the seed of development goes with them: in the same scene they live the same lives, whatever the run's seed
+  output_of(run("again", {start_, "experiment.seed=8"}));
+  EXPECT_TRUE(std::ranges::equal(home, first_born("again"), is_same));
+  output_of(run("otherwise", {start_, "experiment.seed=8", "development.seed=9"}));
+  EXPECT_FALSE(std::ranges::equal(home, first_born("otherwise"), is_same)) << "unless another one is given";
 }
 
 TEST_F(Start, IfThereIsNotRoomForAllTheBestComeAndFoundersAreNoImmigrants) {

@@ -164,8 +164,8 @@ TEST(BodyDistance, OfTwoLivesOfOneGenomeIsZeroWithoutNoiseAlone) {
 
 TEST(BodyDistance, SeesThatTwoScenesLetMassesComeElsewhere) {
   const std::string growth = "name = \"mass-growth\"\nmasses = 3\nwhere = \"by-stress\"";
-  const GrownBody a = grown(growth, {"development.cycles=6"}),
-                  b = grown(growth, {"development.cycles=6", "scene.gravity.slope=30"});
+  const GrownBody a = grown(growth, {"development.draws=individual", "development.cycles=6"}),
+                  b = grown(growth, {"development.draws=individual", "development.cycles=6", "scene.gravity.slope=30"});
   ASSERT_EQ(a.body.masses.size(), a.born + 18);
   ASSERT_EQ(a.numbers, b.numbers) << "as many masses have come, so that numbers tell nothing";
   EXPECT_GT(mass_distance(a, b), 1e-4);
@@ -239,7 +239,7 @@ void replace_mass(Life& life, Vec3 position, std::uint32_t goes) {
   living.body.masses.erase(living.body.masses.begin() + goes);
   living.state.position.push_back(position);
   living.state.position.erase(living.state.position.begin() + goes);
-  living.numbers.apply({.removed_masses = {goes}, .new_masses = {{position, 1}}});
+  living.numbers.apply({.removed_masses = {goes}, .new_masses = {{.position = position, .mass = 1, .identity = 9}}});
 }
 
 TEST(GrowthObserver, MassesOfBirthKeepTheirRestPlacesInBodyLengthsFromTheCorner) {

@@ -68,16 +68,6 @@ TEST(Evaluation, DoesNotDependOnThreadsOrCompanyEvenIfSomeAreAllAir) {
   EXPECT_TRUE(results[24].objectives.empty());
 }
 
-TEST(Evaluation, DevelopmentDependsOnTheIndividualsOwnNumbers) {
-  const Experiment experiment = testing::small({"encoding.size=[3, 2, 2]"});
-  std::vector<Individual> twins = breed(experiment, {}, 0, 0, 1);
-  twins.push_back(twins.front());
-  twins.back().id = 1;
-  const std::vector<Result> results = evaluate(experiment, twins);
-  ASSERT_EQ(results[0].status, Status::ok);
-  EXPECT_NE(results[0].objectives, results[1].objectives) << "springs come at random places";
-}
-
 TEST(Evaluation, CountsEverySpringOfEveryStep) {
   const Result result = result_of(testing::small());  // 12 masses, 28 + 28 - 6 springs
   ASSERT_EQ(result.status, Status::ok) << result.reason;

@@ -105,6 +105,7 @@ TEST_F(IslandTables, AreReadBackFromTheRecordAndDivideTheSpringEvaluations) {
   for (const Experiment& island : read({{"experiment.spring_evaluations", "3e9", ""}})) {
     const Experiment again = testing::read(island.resolved);
     EXPECT_EQ(again.resolved, island.resolved);
+    EXPECT_EQ(again.development.seed, 7) << "that of the run: islands exchange robots, which bring it along";
     EXPECT_EQ(again.islands, island.islands);
     EXPECT_EQ(island.spring_evaluations, 1e9);
   }
@@ -181,7 +182,7 @@ TEST_F(Islands, SendTheirBestWhoAreBornAgain) {
         }
     }
   }
-  EXPECT_GE(arrived, 3);
+  EXPECT_GE(arrived, 2);
 }
 
 TEST_F(Islands, ReceiveThoseWhoseGenesTheyDoNotHave) {
@@ -202,7 +203,7 @@ TEST_F(Islands, ReceiveThoseWhoseGenesTheyDoNotHave) {
     arrived += has_come;
   }
   EXPECT_EQ(sent, 6u);
-  EXPECT_GE(arrived, 3u);
+  EXPECT_GE(arrived, 2u);
 }
 
 /// Individuals whose first objective is their id.

@@ -44,7 +44,7 @@ auto fields(const Mass& m) { return std::tuple(m.rest, m.mass, m.material, m.air
 auto fields(const Spring& s) {
   return std::tuple(s.a, s.b, s.rest_length, s.material, s.growth, s.first_length, s.stiffness_factor);
 }
-auto fields(const NewMass& m) { return std::tuple(m.position, m.mass, m.material); }
+auto fields(const NewMass& m) { return std::tuple(m.position, m.mass, m.material, m.mother, m.identity); }
 auto fields(const NewSpring& s) { return std::tuple(s.a, s.b, s.material, s.rest_length, s.stiffness_factor); }
 auto fields(const ChangedSpring& s) { return std::tuple(s.spring, s.rest_length, s.material, s.stiffness_factor); }
 auto fields(const Growth& g) { return std::tuple(g.from, g.to, g.whole); }
@@ -102,7 +102,7 @@ Change change_of_all_kinds() {
                                   {.spring = 7, .material = one, .stiffness_factor = 0.1 + 0.2},
                                   {.spring = 6, .stiffness_factor = 1e300}};
   change.edits.causes.changed_springs = {2, -3, 4, 5};
-  change.edits.new_masses = {{{-1, 0.1, 2}, 0.2, no_material}, {{0, 0, 0}, 0.3, 4}};
+  change.edits.new_masses = {{{-1, 0.1, 2}, 0.2, no_material, 3, 0xfffffffffffffffe}, {{0, 0, 0}, 0.3, 4, {}, 0}};
   change.edits.new_springs = {{1, 200, one, 0.1}, {2, 0xfffffffe, other, 0.0}, {5, 6, other, 7.0, 0.1 + 0.2}};
   return change;
 }
@@ -124,7 +124,7 @@ TEST(LifeRecord, GivesBackWhatItWasGivenAndRefusesADamagedOne) {
   const Change of_masses{.cycle = 301,
                          .op = 1,
                          .edits = {.removed_masses = {5},
-                                   .new_masses = {{{1, 2, 3}, 0.2, 1}},
+                                   .new_masses = {{{1, 2, 3}, 0.2, 1, 0, 9}},
                                    .new_springs = {{1, 2, {1, 0, 0, 0}, 0.5}},
                                    .causes = {.removed_masses = {0.25}, .new_masses = {7}, .new_springs = {8}}}};
   const std::vector<Change> given = {change_of_all_kinds(), torn_off, change_of_all_kinds(), of_masses};
@@ -229,7 +229,7 @@ TEST(LifeRecord, LivesFollowTheirsWhateverTheOperatorsWouldDoAndThoseWithoutOneG
     const std::vector<Individual> individuals = breed(experiment, {}, 0, 0, 6);
     std::vector<Newborn> newborns = newborns_of(individuals);
     const std::vector<Life> recorded = Developed(experiment, newborns).lives;
-    experiment.seed += 1;  // development draws other numbers
+    experiment.development.seed += 1;  // development draws other numbers
     const std::vector<Life> free = Developed(experiment, newborns).lives;
     for (const std::size_t i : {1, 3, 5}) newborns[i].record = recorded[i].result.record;
     const std::vector<Life> mixed = Developed(experiment, newborns).lives;
@@ -245,7 +245,10 @@ TEST(LifeRecord, LivesFollowTheirsWhateverTheOperatorsWouldDoAndThoseWithoutOneG
   }
 }
 
-Experiment run_of_60() { return small({"experiment.evaluations=60", "development.operator.0.name=length-adaptation"}); }
+Experiment run_of_60() {
+  return small(
+      {"experiment.evaluations=60", "development.draws=individual", "development.operator.0.name=length-adaptation"});
+}
 
 std::vector<ArchivedIndividual> individuals_of(const Archive& archive) {
   std::vector<ArchivedIndividual> all;

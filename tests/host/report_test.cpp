@@ -509,8 +509,12 @@ TEST_F(RunJson, AReportShowsTheBestElites) {
 }
 
 TEST_F(RunJson, AReportShowsTheLineOfTheBestFromItsFounder) {
-  Individual child = archive_.known_individual(archive_.best(1).at(0));
-  const std::uint32_t founder = child.id;
+  const double best = archive_.known_individual(archive_.best(1).at(0)).result.objectives[0];
+  std::uint32_t founder = 0;
+  while (archive_.known_individual(founder).result.status != Status::ok) ++founder;
+  Individual child = archive_.known_individual(founder);
+  ASSERT_EQ(child.born, 0u);
+  child.result.objectives[0] = best;
   std::vector<std::uint32_t> line;
   for (std::uint32_t generation = archive_.generations().back().generation + 1; line.size() < 4; ++generation) {
     child.parents = {child.id};

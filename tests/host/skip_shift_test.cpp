@@ -45,17 +45,15 @@ std::vector<double> points_of(const Body& body, std::uint32_t seed, int tallies 
   const State state = resting(body, {});
   std::vector<double> points(body.springs.size());
   Rng random = stream(seed);
-  for (int i = 0; i < tallies; ++i) tally(body, state, random, points);
+  for (int i = 0; i < tallies; ++i) tally(body, state, random_order(body.springs.size(), random), points);
   return points;
 }
 
 TEST(SkipShift, EachGroupGivesAPointToItsMostAndTakesOneFromItsLeast) {
   // computes the same groups again, group by group; a body with few springs has groups of two
   for (const auto& [springs, groups] : {std::pair(1000u, 256u), {10u, 5u}}) {
-    std::vector<std::uint32_t> order(springs);
-    std::iota(order.begin(), order.end(), 0u);
     Rng again = stream(1);
-    again.shuffle(order);
+    const std::vector<std::uint32_t> order = random_order(springs, again);
     std::vector<double> expected(springs);
     for (std::size_t group = 0; group < groups; ++group) {
       const std::size_t first = group * springs / groups, last = (group + 1) * springs / groups;
@@ -93,7 +91,11 @@ Tallied run(Simulator& simulator, const Body& body, const State& start, std::uin
   Tallied tallied{{}, start};
   tallied.task = {.body = &body, .state = &tallied.state, .dt = 0.0007, .steps = steps};
   Rng random = stream(4);
-  run_with_tallies(simulator, {&tallied.task, 1}, skip, {&random, 1});
+  std::uint64_t tallies = 0;
+  run_with_tallies(simulator, {&tallied.task, 1}, skip, [&](std::size_t, std::uint64_t number) {
+    EXPECT_EQ(number, tallies++) << "each tally has its number";
+    return random_order(body.springs.size(), random);
+  });
   return tallied;
 }
 
@@ -110,7 +112,7 @@ TEST(SkipShift, TalliesAfterEverySkipSteps) {
   Task piece{.body = &body, .state = &state, .dt = 0.0007, .steps = 10, .later_steps = 95};
   for (; piece.later_steps > 0; piece.later_steps -= std::min<std::uint64_t>(10, piece.later_steps)) {
     simulator->run({&piece, 1}, {});
-    tally(body, state, random, points);
+    tally(body, state, random_order(body.springs.size(), random), points);
   }
   EXPECT_EQ(tallied.task.stress, points);
   EXPECT_EQ(tallied.task.status, Status::ok);
@@ -135,7 +137,7 @@ TEST(SkipShift, ADivergedBodyEndsAndDisturbsNoOther) {
   tasks[0] = {.body = &broken, .state = &states[0], .dt = 0.0007, .steps = 200};
   tasks[1] = {.body = &sound, .state = &states[1], .dt = 0.0007, .steps = 200};
   std::vector<Rng> random{stream(9), stream(4)};
-  run_with_tallies(*simulator, tasks, 20, random);
+  run_with_tallies(*simulator, tasks, 20, [&](std::size_t i, std::uint64_t) { return random_order(300, random[i]); });
   EXPECT_EQ(tasks[0].status, Status::diverged);
   EXPECT_FALSE(tasks[0].reason.empty());
   EXPECT_GT(tasks[0].ended_at, 0);

@@ -127,7 +127,7 @@ Life lived_on(Life life, const Devo& devo, std::uint64_t applications) {
   return life;
 }
 
-TEST(LengthAdaptation, ABodyThatGrowsAndTopplesKeepsTheBounds) {
+TEST_BOTH_DRAWS(LengthAdaptation, ABodyThatGrowsAndTopplesKeepsTheBounds) {
   const auto growth = make<Devo>("mass-growth", "masses = 5\nsprings = 8\nwhere = 'by-stress'");
   Life grown = lived_on(chain(), *growth, 2);
   for (Vec3& position : grown.living.state.position) position = {-position.z, position.y, position.x + 2};
@@ -143,7 +143,7 @@ TEST(LengthAdaptation, ABodyThatGrowsAndTopplesKeepsTheBounds) {
   }
 }
 
-TEST(LengthAdaptation, SpringsThatCameWithoutLengthStay) {
+TEST_BOTH_DRAWS(LengthAdaptation, SpringsThatCameWithoutLengthStay) {
   Life life = chain();
   life.living.body.springs[39].rest_length = life.living.body.springs[39].first_length = 0;
   const Edits edits = develop(*make<Devo>("length-adaptation", "springs = 1"), life, 1);

@@ -1,7 +1,7 @@
 // NSGA-II, also on problems whose fronts are known (Zitzler, Deb and Thiele 2000).
 #include <cmath>
 
-#include "evodevo/helpers/pareto.hpp"
+#include "evodevo/helpers/selection/pareto.hpp"
 #include "evolution.hpp"
 
 namespace evodevo::test::EVODEVO_FILE {

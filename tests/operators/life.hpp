@@ -11,6 +11,23 @@
 
 namespace evodevo::test {
 
+/// Whether draws are inherited in the lives of the test that runs; see TEST_BOTH_DRAWS.
+inline bool draws_are_inherited = false;
+
+/// A test that is made with draws of the individual, and again with inherited draws.
+#define TEST_BOTH_DRAWS(suite, name)                                    \
+  static void suite##name();                                            \
+  TEST(suite, name) {                                                   \
+    for (const bool inherited : {false, true}) {                        \
+      SCOPED_TRACE(inherited ? "inherited draws" : "individual draws"); \
+      draws_are_inherited = inherited;                                  \
+      suite##name();                                                    \
+      draws_are_inherited = false;                                      \
+      if (::testing::Test::HasFatalFailure()) return;                   \
+    }                                                                   \
+  }                                                                     \
+  static void suite##name()
+
 /// A living body, and the other values from which a DevoContext is made.
 struct Life {
   LivingBody living;
@@ -26,6 +43,7 @@ struct Life {
   std::vector<double> contact, age, degree, load;  ///< [masses]
   std::vector<double> mass_memory, spring_memory;  ///< what the operator remembers
   std::size_t mass_width = 0, spring_width = 0;    ///< numbers that it remembers about each mass and each spring
+  std::uint64_t draw_seed = 0;
 
   DevoContext context() const {
     DevoContext context{living.body, living.state, 3,      100,    application, applications, time,
@@ -39,6 +57,9 @@ struct Life {
     context.spring_memory = Memory(spring_memory, spring_width, "spring");
     context.first_time = first_time;
     context.last_time = last_time;
+    context.identities = living.numbers.identities();
+    context.daughters = living.numbers.daughters();
+    context.draws = Draws(philox, draw_seed, 1, draws_are_inherited);
     return context;
   }
 
@@ -113,6 +134,7 @@ inline std::set<Pair> joined(const Body& body) {
 
 inline Edits develop(const Devo& devo, Life life, std::uint64_t seed) {
   life.complete_for(devo);
+  life.draw_seed = mixed(seed, 1);
   Edits edits;
   Rng rng = stream(seed);
   devo.develop(life.context(), edits, rng);

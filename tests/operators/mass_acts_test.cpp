@@ -10,7 +10,7 @@ double new_stiffness(const Body& body, const ChangedSpring& change) {
   return change.stiffness_factor.value() * body.materials[body.springs[change.spring].material].stiffness;
 }
 
-TEST(MassActs, StiffensOrSoftensTheSpringsOfAMass) {
+TEST_BOTH_DRAWS(MassActs, StiffensOrSoftensTheSpringsOfAMass) {
   const auto devo = make<Devo>("regulated-growth", std::string(one_act) + "\nrate = 0.2");
   Life life = varied_life();
   const Body& body = life.living.body;
@@ -33,7 +33,7 @@ TEST(MassActs, StiffensOrSoftensTheSpringsOfAMass) {
   }
 }
 
-TEST(MassActs, BothMassesOfASpringStiffenIt) {
+TEST_BOTH_DRAWS(MassActs, BothMassesOfASpringStiffenIt) {
   const auto devo = make<Devo>("regulated-growth", "actions = 100\nhigh = 1e6");
   Life life = two_chains();
   life.own = genes(*devo, {{"stiffen", "bias", 1.0f}});
@@ -43,7 +43,7 @@ TEST(MassActs, BothMassesOfASpringStiffenIt) {
     EXPECT_NEAR(new_stiffness(life.living.body, change), 10000 * std::exp(0.1 * 2 * std::tanh(1.0)), 1e-9);
 }
 
-TEST(MassActs, DaughtersLieWhereThereIsRoom) {
+TEST_BOTH_DRAWS(MassActs, DaughtersLieWhereThereIsRoom) {
   // a chain along y at a height of 1 m; its ends have all their partners on one side
   const auto devo = make<Devo>("regulated-growth", "actions = 2\nsprings = 3\ndistance = 0.25");
   Life life = two_chains();
@@ -73,7 +73,7 @@ TEST(MassActs, DaughtersLieWhereThereIsRoom) {
   EXPECT_EQ(places.size(), 20u);
 }
 
-TEST(MassActs, DaughtersGetOneSpringToEachPartnerWhateverItsNumberOfSprings) {
+TEST_BOTH_DRAWS(MassActs, DaughtersGetOneSpringToEachPartnerWhateverItsNumberOfSprings) {
   const auto devo = make<Devo>("regulated-growth", "actions = 1\nsprings = 4\ndistance = 0.25");
   Life life = two_chains();
   Body& body = life.living.body;
@@ -85,7 +85,7 @@ TEST(MassActs, DaughtersGetOneSpringToEachPartnerWhateverItsNumberOfSprings) {
   EXPECT_EQ(joined(after(life, edits).body), (std::set<Pair>{{0, 1}, {1, 2}, {3, 4}, {4, 5}, {0, 6}, {1, 6}, {2, 6}}));
 }
 
-TEST(MassActs, CrowdedDaughtersAreNotBorn) {
+TEST_BOTH_DRAWS(MassActs, CrowdedDaughtersAreNotBorn) {
   Life life = two_chains();
   life.contact = {1, 0, 0, 0, 0, 0};
   for (const auto& [min_distance, born] : {std::pair("0.24", 1u), {"0.26", 0u}}) {
@@ -97,7 +97,7 @@ TEST(MassActs, CrowdedDaughtersAreNotBorn) {
   }
 }
 
-TEST(MassActs, BodiesGrowToTheLimits) {
+TEST_BOTH_DRAWS(MassActs, BodiesGrowToTheLimits) {
   const auto devo = make<Devo>("regulated-growth",
                                "actions = 5\nlimit = 40\nsprings = 4\nmost_springs = 9\nleast_springs = 2\n"
                                "low = 4000.0\nhigh = 11000.0\nmin_distance = 0.0\nrate = 1.0");
@@ -124,7 +124,7 @@ TEST(MassActs, BodiesGrowToTheLimits) {
   }
 }
 
-TEST(MassActs, NoMassLosesItsLastSprings) {
+TEST_BOTH_DRAWS(MassActs, NoMassLosesItsLastSprings) {
   Life life = two_chains();  // every spring has a mass at an end of its chain, which has no other
   const auto released = [&](const std::string& toml) {
     const auto devo = make<Devo>("regulated-growth", toml);
@@ -137,7 +137,7 @@ TEST(MassActs, NoMassLosesItsLastSprings) {
   EXPECT_EQ(released("least_springs = 2"), 0u);
 }
 
-TEST(MassActs, ReachesForTheNearestMassWithRoom) {
+TEST_BOTH_DRAWS(MassActs, ReachesForTheNearestMassWithRoom) {
   const auto devo = make<Devo>("regulated-growth", "actions = 1\nmost_springs = 2\nsprings = 2");
   Life life = life_of_masses(5, false);
   for (std::uint32_t i = 0; i < 5; ++i) life.living.state.position[i] = {double(i), 0, 1};
@@ -152,7 +152,7 @@ TEST(MassActs, ReachesForTheNearestMassWithRoom) {
   EXPECT_EQ(edits.new_springs[0].phase_growth, 1.5f) << "like the spring whose material it takes over";
 }
 
-TEST(MassActs, OnesThatAreHeldBackGiveTheirTurnsToOthers) {
+TEST_BOTH_DRAWS(MassActs, OnesThatAreHeldBackGiveTheirTurnsToOthers) {
   const auto devo = make<Devo>("regulated-growth", "actions = 1\nleast_springs = 1\nmost_springs = 20");
   Life life = two_chains();  // no mass may lose a spring, except in a triangle
   life.add_spring(3, 5, bone, 0.5);
@@ -161,7 +161,7 @@ TEST(MassActs, OnesThatAreHeldBackGiveTheirTurnsToOthers) {
   EXPECT_THAT(develop(*devo, life, 1).removed_springs, ::testing::ElementsAre(4)) << "mass 1 wanted it most";
 }
 
-TEST(MassActs, DegenerateBodiesStayAsTheyAre) {
+TEST_BOTH_DRAWS(MassActs, DegenerateBodiesStayAsTheyAre) {
   const auto devo = make<Devo>("regulated-growth", "min_distance = 0.0\nleast_springs = 1");
   Life at_one_place = two_chains(), nowhere = two_chains(), airy = life_of_masses(2);
   for (Vec3& position : at_one_place.living.state.position) position = {1, 1, 1};

@@ -22,7 +22,7 @@ Life ring(bool with_materials = true) {
   return life;
 }
 
-TEST(MassTurnover, MassesOfFewSpringsGo) {
+TEST_BOTH_DRAWS(MassTurnover, MassesOfFewSpringsGo) {
   const auto devo = make<Devo>("mass-turnover");
   const Life life = ring();
   const Edits edits = develop(*devo, life, 1);
@@ -38,7 +38,7 @@ TEST(MassTurnover, MassesOfFewSpringsGo) {
   EXPECT_EQ(after(life, edits).body.masses.size(), masses);
 }
 
-TEST(MassTurnover, ContactsThroughAirCount) {
+TEST_BOTH_DRAWS(MassTurnover, ContactsThroughAirCount) {
   Life life = ring();
   life.living.body.masses[0].air_contacts = 1;
   life.living.body.masses[2].air_contacts = 1;
@@ -47,14 +47,14 @@ TEST(MassTurnover, ContactsThroughAirCount) {
   EXPECT_THAT(edits.causes.removed_masses, ElementsAre(18, 19, 19));
 }
 
-TEST(MassTurnover, ThresholdIsTheFewestSpringsThatStay) {
+TEST_BOTH_DRAWS(MassTurnover, ThresholdIsTheFewestSpringsThatStay) {
   const auto gone = [](const std::string& toml) { return develop(*make<Devo>("mass-turnover", toml), ring(), 1); };
   EXPECT_TRUE(gone("threshold = 17").empty());
   EXPECT_THAT(gone("threshold = 18").removed_masses, ElementsAre(0));
   EXPECT_THAT(gone("threshold = 21").removed_masses, SizeIs(10));
 }
 
-TEST(MassTurnover, LimitTakesTheFewestSpringsFirstAndTiesAtRandom) {
+TEST_BOTH_DRAWS(MassTurnover, LimitTakesTheFewestSpringsFirstAndTiesAtRandom) {
   const Life life = ring();
   EXPECT_TRUE(develop(*make<Devo>("mass-turnover", "limit = 0"), life, 1).empty());
   const auto devo = make<Devo>("mass-turnover", "limit = 2");
@@ -68,7 +68,7 @@ TEST(MassTurnover, LimitTakesTheFewestSpringsFirstAndTiesAtRandom) {
   for (const std::uint32_t mass : {1, 2, 3}) EXPECT_NEAR(second[mass], 100, 45);
 }
 
-TEST(MassTurnover, NewMassesLieInBoundsAndApart) {
+TEST_BOTH_DRAWS(MassTurnover, NewMassesLieInBoundsAndApart) {
   const auto devo = make<Devo>("mass-turnover", "threshold = 21\nmin_distance = 0.25");
   for (const bool resets : {false, true}) {
     Life life = ring();
@@ -91,7 +91,7 @@ TEST(MassTurnover, NewMassesLieInBoundsAndApart) {
   }
 }
 
-TEST(MassTurnover, PlacesFillTheBounds) {
+TEST_BOTH_DRAWS(MassTurnover, PlacesFillTheBounds) {
   const auto devo = make<Devo>("mass-turnover");
   Life life = ring();
   life.bounds = {{10, 20, 30}, {11, 22, 33}};
@@ -103,7 +103,7 @@ TEST(MassTurnover, PlacesFillTheBounds) {
   EXPECT_LT(norm(box.high - life.bounds.high), 0.15);
 }
 
-TEST(MassTurnover, WithoutAFreePlaceTheMassStays) {
+TEST_BOTH_DRAWS(MassTurnover, WithoutAFreePlaceTheMassStays) {
   const Life life = ring();
   EXPECT_TRUE(develop(*make<Devo>("mass-turnover", "min_distance = 50.0"), life, 1).empty());
 
@@ -116,7 +116,7 @@ TEST(MassTurnover, WithoutAFreePlaceTheMassStays) {
   EXPECT_EQ(edits.new_springs.size(), masses - 1) << "those that were to go but stay are partners too";
 }
 
-TEST(MassTurnover, OnlyMassesThatStayTakeUpRoom) {
+TEST_BOTH_DRAWS(MassTurnover, OnlyMassesThatStayTakeUpRoom) {
   const auto devo = make<Devo>("mass-turnover", "threshold = 18\nmin_distance = 0.01");
   const auto gone = [&](std::size_t at) {
     Life life = ring();
@@ -127,7 +127,7 @@ TEST(MassTurnover, OnlyMassesThatStayTakeUpRoom) {
   EXPECT_TRUE(gone(50).empty());
 }
 
-TEST(MassTurnover, NewMassesAreJoinedToDifferentMassesThatStayByTheMeanOfTheirMaterialsWithoutAir) {
+TEST_BOTH_DRAWS(MassTurnover, NewMassesAreJoinedToDifferentMassesThatStayByTheMeanOfTheirMaterialsWithoutAir) {
   const auto devo = make<Devo>("mass-turnover");
   const Life life = ring();
   const auto materials = context().materials;
@@ -155,7 +155,7 @@ TEST(MassTurnover, NewMassesAreJoinedToDifferentMassesThatStayByTheMeanOfTheirMa
   EXPECT_THAT(seen, ElementsAre(bone, muscle, muscle2, tissue));
 }
 
-TEST(MassTurnover, NewMassesAreJoinedToTheNearestThatStay) {
+TEST_BOTH_DRAWS(MassTurnover, NewMassesAreJoinedToTheNearestThatStay) {
   const auto devo = make<Devo>("mass-turnover", "join = 'nearest'\nsprings = 7");
   for (const bool resets : {false, true}) {
     Life life = ring();
@@ -176,7 +176,7 @@ TEST(MassTurnover, NewMassesAreJoinedToTheNearestThatStay) {
   }
 }
 
-TEST(MassTurnover, WithoutMaterialsOfMassesSpringsTakeThoseOfOthers) {
+TEST_BOTH_DRAWS(MassTurnover, WithoutMaterialsOfMassesSpringsTakeThoseOfOthers) {
   Life life = ring(false);
   for (Spring& spring : life.living.body.springs) spring.material = spring.a % 2 ? muscle : tissue;
   std::set<double> seen;
@@ -186,7 +186,7 @@ TEST(MassTurnover, WithoutMaterialsOfMassesSpringsTakeThoseOfOthers) {
   EXPECT_EQ(seen, (std::set<double>{4000, 5000}));
 }
 
-TEST(MassTurnover, HalfOfASmallBodyStays) {
+TEST_BOTH_DRAWS(MassTurnover, HalfOfASmallBodyStays) {
   const auto devo = make<Devo>("mass-turnover");
   Life life = life_of_masses(7, false);
   for (std::uint32_t a = 0; a < 7; ++a)
@@ -200,7 +200,7 @@ TEST(MassTurnover, HalfOfASmallBodyStays) {
 
 // mass-growth --------------------------------------------------------------------------------------------------------
 
-TEST(MassGrowth, MassesComeAndNoneGoes) {
+TEST_BOTH_DRAWS(MassGrowth, MassesComeAndNoneGoes) {
   const auto devo = make<Devo>("mass-growth", "masses = 7\nsprings = 3");
   const Life life = two_chains();
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
@@ -212,7 +212,7 @@ TEST(MassGrowth, MassesComeAndNoneGoes) {
   }
 }
 
-TEST(MassGrowth, EndsAtTheLimit) {
+TEST_BOTH_DRAWS(MassGrowth, EndsAtTheLimit) {
   Life life = two_chains();
   const auto devo = make<Devo>("mass-growth", "masses = 5\nlimit = 13\nsprings = 2");
   std::vector<std::size_t> sizes;
@@ -224,7 +224,7 @@ TEST(MassGrowth, EndsAtTheLimit) {
   EXPECT_TRUE(develop(*make<Devo>("mass-growth", "limit = 3"), life, 1).empty()) << "nor does any go";
 }
 
-TEST(MassGrowth, MassesComeAnywhereOnASpring) {
+TEST_BOTH_DRAWS(MassGrowth, MassesComeAnywhereOnASpring) {
   const auto devo = make<Devo>("mass-growth", "masses = 1\nsprings = 1\nwhere = 'by-stress'\nmin_distance = 0.0");
   const Life life = two_chains();
   const auto& positions = life.living.state.position;
@@ -242,7 +242,7 @@ TEST(MassGrowth, MassesComeAnywhereOnASpring) {
   for (const int quarter : along) EXPECT_NEAR(quarter, 250, 70);  // five standard deviations
 }
 
-TEST(MassGrowth, NoMassComesBelowTheFloorOrTooNear) {
+TEST_BOTH_DRAWS(MassGrowth, NoMassComesBelowTheFloorOrTooNear) {
   const auto devo = make<Devo>("mass-growth", "masses = 1000\nsprings = 1\nwhere = 'by-stress'\nmin_distance = 0.3");
   Life life = two_chains();
   for (Vec3& position : life.living.state.position) position.z = -0.001;  // sunk into the floor
@@ -257,7 +257,7 @@ TEST(MassGrowth, NoMassComesBelowTheFloorOrTooNear) {
   }
 }
 
-TEST(MassGrowth, NothingIsJoinedToAir) {
+TEST_BOTH_DRAWS(MassGrowth, NothingIsJoinedToAir) {
   Life airy = life_of_masses(2);
   airy.living.body.masses[0].material = airy.living.body.masses[1].material = air;
   airy.add_spring(0, 1, bone, 1);

@@ -1,5 +1,5 @@
 // The helpers for selection operators, compared with direct implementations of their definitions.
-#include "evodevo/helpers/pareto.hpp"
+#include "evodevo/helpers/selection/pareto.hpp"
 
 #include "support.hpp"
 

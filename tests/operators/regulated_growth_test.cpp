@@ -36,7 +36,7 @@ std::map<std::string, std::vector<double>> feelings_of(Life life, const Devo& de
   return felt;
 }
 
-TEST(RegulatedGrowth, EveryFeelingReachesEveryOutput) {
+TEST_BOTH_DRAWS(RegulatedGrowth, EveryFeelingReachesEveryOutput) {
   const auto devo = make<Devo>("regulated-growth", one_act);
   Life life = varied_life();
   const auto& springs = life.living.body.springs;
@@ -93,13 +93,13 @@ TEST(RegulatedGrowth, EveryFeelingReachesEveryOutput) {
   }
 }
 
-TEST(RegulatedGrowth, MassesRememberAsManyNumbersAsAskedFor) {
+TEST_BOTH_DRAWS(RegulatedGrowth, MassesRememberAsManyNumbersAsAskedFor) {
   const auto devo = make<Devo>("regulated-growth", "memory = 3");
   EXPECT_THAT(devo->mass_memory(), ElementsAre("signal", "memory 1", "memory 2"));
   EXPECT_EQ(devo->layout(context()).first_size(), 7u * 9);
 }
 
-TEST(RegulatedGrowth, DaughtersTakeTheMothersMemory) {
+TEST_BOTH_DRAWS(RegulatedGrowth, DaughtersTakeTheMothersMemory) {
   const auto devo = make<Devo>("regulated-growth", "actions = 3\nmin_distance = 0.0");
   Life life = varied_life();
   life.own = genes(*devo, {{"divide", "load", 1}, {"signal", "contact", 1}, {"memory 1", "signal", 2}});
@@ -118,7 +118,7 @@ TEST(RegulatedGrowth, DaughtersTakeTheMothersMemory) {
   EXPECT_EQ(daughters, 3u);
 }
 
-TEST(RegulatedGrowth, SignalsSpreadFromMassToMass) {
+TEST_BOTH_DRAWS(RegulatedGrowth, SignalsSpreadFromMassToMass) {
   const auto devo = make<Devo>("regulated-growth");
   Life life = life_of_masses(4, false);
   for (std::uint32_t i = 0; i < 3; ++i) life.add_spring(i, i + 1, bone, 1);
@@ -148,6 +148,7 @@ Life permuted(Life life, const std::vector<std::uint32_t>& order) {
     life.age[i] = before.age[order[i]];
     for (const std::size_t m : {0, 1}) life.mass_memory[2 * i + m] = before.mass_memory[2 * order[i] + m];
   }
+  life.living.numbers = MassNumbers(std::vector<std::uint64_t>(order.begin(), order.end()));
   for (Spring& spring : life.living.body.springs) {
     spring.a = place[spring.a];
     spring.b = place[spring.b];
@@ -155,7 +156,7 @@ Life permuted(Life life, const std::vector<std::uint32_t>& order) {
   return life;
 }
 
-TEST(RegulatedGrowth, PermutedMassesGiveThePermutedEdits) {
+TEST_BOTH_DRAWS(RegulatedGrowth, PermutedMassesGiveThePermutedEdits) {
   const auto devo = make<Devo>("regulated-growth", "actions = 4\nmin_distance = 0.0\nleast_springs = 1\nlow = 1.0");
   std::vector<std::uint32_t> order(12);
   std::iota(order.begin(), order.end(), 0u);
@@ -180,7 +181,7 @@ TEST(RegulatedGrowth, PermutedMassesGiveThePermutedEdits) {
   }
 }
 
-TEST(RegulatedGrowth, RecordsThatAreNotFiniteCountAsZero) {
+TEST_BOTH_DRAWS(RegulatedGrowth, RecordsThatAreNotFiniteCountAsZero) {
   const auto devo = make<Devo>("regulated-growth");
   Life life = two_chains();
   life.contact = {NAN, 0.5, 0, 0, 0, 0};

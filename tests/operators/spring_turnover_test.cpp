@@ -22,7 +22,7 @@ Life busy_life(bool with_materials = true) {
   return life;
 }
 
-TEST(SpringTurnover, TheLeastStressedGoAndAsManyComeBetweenOthers) {
+TEST_BOTH_DRAWS(SpringTurnover, TheLeastStressedGoAndAsManyComeBetweenOthers) {
   const auto devo = make<Devo>("spring-turnover");
   const Life life = busy_life();
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
@@ -44,7 +44,7 @@ TEST(SpringTurnover, TheLeastStressedGoAndAsManyComeBetweenOthers) {
   }
 }
 
-TEST(SpringTurnover, AllFreePairsAreReachedAlike) {
+TEST_BOTH_DRAWS(SpringTurnover, AllFreePairsAreReachedAlike) {
   const auto devo = make<Devo>("spring-turnover", "springs = 10");
   Life life = life_of_masses(12, false);
   for (std::uint32_t i = 1; i < 12; ++i) life.add_spring(0, i, bone, i);
@@ -55,7 +55,7 @@ TEST(SpringTurnover, AllFreePairsAreReachedAlike) {
   for (const auto& [pair, times] : count) EXPECT_NEAR(times, 200, 70);
 }
 
-TEST(SpringTurnover, MaterialsAreTheMeanOfTheMassesAndNeverAir) {
+TEST_BOTH_DRAWS(SpringTurnover, MaterialsAreTheMeanOfTheMassesAndNeverAir) {
   const auto devo = make<Devo>("spring-turnover");
   const Life life = busy_life();
   const auto materials = context().materials;
@@ -70,7 +70,7 @@ TEST(SpringTurnover, MaterialsAreTheMeanOfTheMassesAndNeverAir) {
   EXPECT_TRUE(with_air) << "masses of air are joined to others";
 }
 
-TEST(SpringTurnover, WithoutMaterialsOfMassesThoseOfTheGoneStay) {
+TEST_BOTH_DRAWS(SpringTurnover, WithoutMaterialsOfMassesThoseOfTheGoneStay) {
   const auto devo = make<Devo>("spring-turnover");
   const Life life = busy_life(false);
   const Edits edits = develop(*devo, life, 1);
@@ -82,7 +82,7 @@ TEST(SpringTurnover, WithoutMaterialsOfMassesThoseOfTheGoneStay) {
   EXPECT_EQ(gone, come);
 }
 
-TEST(SpringTurnover, BreaksTiesAtRandom) {
+TEST_BOTH_DRAWS(SpringTurnover, BreaksTiesAtRandom) {
   const auto devo = make<Devo>("spring-turnover", "springs = 40");
   Life life = busy_life();
   // 20 springs have distinct low stresses, and all others the same high stress
@@ -98,7 +98,7 @@ TEST(SpringTurnover, BreaksTiesAtRandom) {
   }
 }
 
-TEST(SpringTurnover, StressThatIsNoNumberCountsAsTheGreatest) {
+TEST_BOTH_DRAWS(SpringTurnover, StressThatIsNoNumberCountsAsTheGreatest) {
   const auto devo = make<Devo>("spring-turnover");
   Life life = busy_life();
   for (std::size_t s = 0; s < 400; s += 2) life.living.stress[s] = s % 4 ? std::nan("") : HUGE_VAL;
@@ -109,7 +109,7 @@ TEST(SpringTurnover, StressThatIsNoNumberCountsAsTheGreatest) {
   EXPECT_EQ(develop(*devo, life, 1).removed_springs.size(), 125u);
 }
 
-TEST(SpringTurnover, OnlyWhatCanBeReplacedGoes) {
+TEST_BOTH_DRAWS(SpringTurnover, OnlyWhatCanBeReplacedGoes) {
   const auto devo = make<Devo>("spring-turnover");
   Life chain = life_of_masses(3, false);
   chain.add_spring(0, 1, bone, 2);
@@ -132,7 +132,7 @@ TEST(SpringTurnover, OnlyWhatCanBeReplacedGoes) {
   EXPECT_EQ(after(small, exchange).body.springs.size(), 29u);
 }
 
-TEST(SpringTurnover, EachOfTheMostStressedGetsOneBeside) {
+TEST_BOTH_DRAWS(SpringTurnover, EachOfTheMostStressedGetsOneBeside) {
   const auto devo = make<Devo>("spring-turnover", "springs = 20\nwhere = 'most-stressed'");
   const Life life = busy_life(false);
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
@@ -158,7 +158,7 @@ int times_in_first_chain(const Life& life, const std::string& where) {
   return first;
 }
 
-TEST(SpringTurnover, SpringsComeBesideOthersByTheirStress) {
+TEST_BOTH_DRAWS(SpringTurnover, SpringsComeBesideOthersByTheirStress) {
   const double nan = std::nan("");
   const struct {
     std::vector<double> stress;
@@ -176,7 +176,7 @@ TEST(SpringTurnover, SpringsComeBesideOthersByTheirStress) {
   }
 }
 
-TEST(SpringTurnover, NoSpringJoinsMassesAtOnePlaceOrOfAir) {
+TEST_BOTH_DRAWS(SpringTurnover, NoSpringJoinsMassesAtOnePlaceOrOfAir) {
   const auto devo = make<Devo>("spring-turnover");
   Life life = life_of_masses(3);
   life.add_spring(0, 1, bone, 2);

@@ -54,13 +54,20 @@ struct Devo final : evodevo::Devo {
     if constexpr (fault == "bodies_memory") return {"calls"};
     return {};
   }
+  evodevo::Traits traits() const override {
+    if constexpr (fault == "locality") return {.locality = 3};
+    return {};
+  }
   evodevo::Measure measure(evodevo::Causes::List list) const override {
     if constexpr (fault == "names_measure") return {"<b>work</b>", "J"};
     return evodevo::Devo::measure(list);
   }
   void develop([[maybe_unused]] const evodevo::DevoContext& context, [[maybe_unused]] evodevo::Edits& edits,
-               Rng&) const override {
-    if constexpr (fault == "bodies") {
+               [[maybe_unused]] Rng& rng) const override {
+    if constexpr (fault == "locality") {
+      for (std::uint32_t s = 0; s < context.body.springs.size(); ++s)  // one mass less, and all later draws differ
+        if (rng.chance(0.1)) edits.removed_springs.push_back(s);
+    } else if constexpr (fault == "bodies") {
       if (context.body.springs.empty()) return;
       const evodevo::Spring& twin = context.body.springs[0];
       edits.new_springs.push_back({twin.a, twin.b, context.body.materials[twin.material], {}});
@@ -229,7 +236,8 @@ constexpr evodevo::OperatorEntry wrong() {
   const auto is_one_of = [](auto... faults) { return ((fault == faults) || ...); };
   if constexpr (is_one_of("twins", "changes_crossover")) return operator_entry<Crossover>(name, summary);
   if constexpr (fault.starts_with("decoding")) return operator_entry<Encoding>(name, summary);
-  if constexpr (fault.starts_with("bodies") || fault == "names_measure") return operator_entry<Devo>(name, summary);
+  if constexpr (fault.starts_with("bodies") || is_one_of("locality", "names_measure"))
+    return operator_entry<Devo>(name, summary);
   if constexpr (is_one_of("translation", "nan_hidden", "objectives", "objectives_nan", "names_objective", "names_unit"))
     return operator_entry<Fitness>(name, summary);
   if constexpr (is_one_of("generations", "generations_note", "generations_children"))

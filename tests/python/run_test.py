@@ -168,7 +168,7 @@ class OfASmallRun(unittest.TestCase):
         self.assertEqual(len(evodevo.Run(folder).generations), 4)
         with sqlite3.connect(folder / "run.sqlite") as connection:
             connection.execute("UPDATE record SET value = '1' WHERE key = 'format'")
-        with self.assertRaisesRegex(evodevo.ArchiveError, "format 1, .*13"):
+        with self.assertRaisesRegex(evodevo.ArchiveError, f"format 1, .*{evodevo.run.FORMAT}"):
             evodevo.Run(folder)
         (folder / "run.sqlite").write_bytes(b"no database" * 500)
         with self.assertRaisesRegex(evodevo.ArchiveError, "run.sqlite"):

@@ -38,7 +38,7 @@ struct Told final : Devo {
 inline Experiment with(const std::vector<Told>& operators, std::vector<Override> overrides = {}) {
   Experiment experiment = read(small_experiment, std::move(overrides));
   experiment.devo.clear();
-  for (const Told& told : operators) experiment.devo.push_back({std::make_unique<Told>(told), {}});
+  for (const Told& told : operators) experiment.devo.push_back({std::make_unique<Told>(told), "told", {}});
   return experiment;
 }
 

@@ -26,6 +26,7 @@ selection = { name = "age-fitness-pareto" }
 [materials.${JSON.stringify(materialName)}]
 stiffness = 3000
 [development]
+draws = "individual"
 cycles = ${cycles}
 cycle_time = ${cycleTime}
 operator = [{ name = "spring-turnover", springs = 6 }, { name = "mass-turnover", springs = 9 }]

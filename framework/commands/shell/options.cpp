@@ -9,6 +9,7 @@
 
 #include "base/text.hpp"
 #include "commands/shell/output/notices.hpp"
+#include "evolution/founders.hpp"
 #include "evolution/resimulation.hpp"
 #include "experiment/device.hpp"
 #include "experiment/toml_reader.hpp"
@@ -188,8 +189,16 @@ Experiment given_experiment(const std::string& file, const Given& given) {
 }
 
 std::vector<Experiment> given_islands(const std::string& file, const Given& given) {
-  return timed("reading " + printable(file) + " and loading its operators",
-               [&] { return read_islands(experiment_source(file, given)); });
+  return timed("reading " + printable(file) + " and loading its operators", [&] {
+    ExperimentSource source = experiment_source(file, given);
+    std::vector<Experiment> islands = read_islands(source);
+    // what the robots of another run have inherited goes with them
+    if (const auto seed = development_seed_of_start(islands.front()); seed && !gives_key(source, "development.seed")) {
+      source.overrides.push_back({"development.seed", std::to_string(*seed), "experiment.start"});
+      islands = read_islands(source);
+    }
+    return islands;
+  });
 }
 
 void print_warnings(const std::vector<std::string>& warnings) {

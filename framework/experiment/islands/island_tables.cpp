@@ -94,6 +94,8 @@ std::vector<toml::table> island_roots(const toml::table& root, const Settings& s
     const std::optional<double> seed = own ? (*own)["seed"].value<double>() : std::nullopt;
     toml::table& run = *one["experiment"].as_table();
     run.insert_or_assign("seed", seed ? static_cast<std::int64_t>(*seed) : island_seed(settings.seed, island));
+    if (!one.contains("development")) one.insert("development", toml::table());
+    one["development"].as_table()->insert_or_assign("seed", settings.development.seed);
     run.insert_or_assign("evaluations", part_of(settings.evaluations, count, island));
     if (settings.spring_evaluations > 0)
       run.insert_or_assign("spring_evaluations", settings.spring_evaluations / static_cast<double>(count));

@@ -79,9 +79,15 @@ void declare_simulation(SettingsVisitor& v, Settings& s) {
 
 void declare_development(SettingsVisitor& v, Settings& s) {
   DevelopmentSettings& d = s.development;
-  v.integer(d.cycles, "cycles", {0, rng_stream::most_cycles}, "Number of cycles of simulation and development.");
+  v.integer(d.cycles, "cycles", {0, rng_stream::most_cycles}, "Number of cycles of simulation and development; by default 0 if there is no devo operator.");
   v.real(d.cycle_time, "cycle_time", {s.step.dt.value_or(shortest_cycle), 1e6, "s"}, "Simulated time of one cycle.");
   v.flag(d.reset, "reset", "Whether the body returns to its rest positions after every cycle.");
+  choice(v, d.draws, "draws",
+         "Random numbers of development, noise and damage: inherited, the same in all individuals for masses of the "
+         "same identity; or individual, others in each individual.");
+  v.integer(d.seed, "seed", {0, 0x1p53 - 1},
+            "Seed of inherited draws, one for all islands; by default the run's or, with experiment.start, that of the "
+            "run with whose last population this one begins.");
   choice(v, d.control, "control", "Control experiment: what replaces development by the operators; off: nothing does.");
   choice(v, d.probe, "probe",
          "How the stress of springs is measured: exactly, as the mean absolute force, or by the paper's tallies.");

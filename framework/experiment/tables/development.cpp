@@ -20,7 +20,7 @@ void check_skip(const TomlReader& t, const Settings& settings) {
 }  // namespace
 
 void read_development(TomlReader& t, Settings& settings) {
-  settings.development.cycles = 100;
+  if (t.has("operator")) settings.development.cycles = 100;
   declare_development(t, settings);
   t.expect({"operator"});
   settings.step.unit = settings.development.cycle_time;

@@ -208,7 +208,11 @@ class OperatorTables {
   void read_devo(TomlReader& t, TomlWriter& writer) {
     Schedule schedule = read_schedule(t);
     declare_schedule(writer, schedule);
-    out_.devo.push_back({factory_.make<Devo>(t), schedule});
+    out_.devo.push_back({factory_.make<Devo>(t), {}, schedule});
+    const std::string& name = out_.uses.back().own_name();
+    const auto same = std::ranges::count_if(
+        out_.uses, [&](const OperatorUse& use) { return use.kind == Devo::kind && use.own_name() == name; });
+    out_.devo.back().label = same == 1 ? name : name + " " + std::to_string(same);
     Devo& op = *out_.devo.back().op;
     factory_.write(t, op, writer);
     out_.devo.back().own_section = add_own_section(t, [&] { return op.layout(out_.context); });

@@ -56,7 +56,7 @@ std::string section_of_scene() {
 
 std::string experiment_reference() {
   Settings s;
-  s.development.cycles = 100;  // the default of this key in a table [development]
+  s.development.cycles = 100;  // the default of this key if there are operators
   Schedule schedule;
   double probability = Varied<Mutation>().probability;
   std::string text;

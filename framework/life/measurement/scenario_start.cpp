@@ -8,6 +8,7 @@
 #include "analysis/energy.hpp"
 #include "analysis/ground.hpp"
 #include "base/philox.hpp"
+#include "life/birth.hpp"
 #include "life/body_building.hpp"
 
 namespace evodevo {
@@ -54,15 +55,7 @@ void do_damage(double share, Rng& random, LivingBody& living) {
   apply(Edits{.removed_masses = loose_masses(living.body)}, living);
 }
 
-void move_at_random(double noise, Rng& random, std::vector<Vec3>& positions) {
-  const double most = noise * bounding_box(positions).longest_side();
-  const auto offset = [&] { return most * (2 * random.uniform() - 1); };
-  for (Vec3& position : positions) {
-    const double x = offset(), y = offset(), z = offset();
-    position = position + Vec3{x, y, z};
-  }
-}
-
+/// Returns the stream of a test, which is the same for all individuals.
 Rng stream(const Test& test, const Experiment& experiment) {
   return Rng(philox, {static_cast<std::uint64_t>(experiment.seed), static_cast<std::uint32_t>(test.scenario),
                       static_cast<std::uint32_t>(test.repeat), rng_stream::scenario});
@@ -87,7 +80,9 @@ std::vector<std::size_t> scenarios_that_develop(const Experiment& experiment) {
 void start_scenario(const Test& test, const Experiment& experiment, const LifeSimulation& simulation, Life& life) {
   const Scenario& scenario = experiment.scenarios[test.scenario];
   LivingBody& living = life.living;
-  Rng random = stream(test, experiment);
+  const Draws draws = draws_for(experiment, life.newborn, "scenario " + scenario.name,
+                                static_cast<std::uint64_t>(test.repeat));
+  Rng random = draws.inherited() ? draws.stream("damage") : stream(test, experiment);
   const Scene& before = *std::exchange(life.scene, &scenario.scene);
   const bool was_here = &before == &scenario.scene;
   if (!was_here && scenario.payload != experiment.payload) change_payload(scenario.payload, living);
@@ -95,7 +90,8 @@ void start_scenario(const Test& test, const Experiment& experiment, const LifeSi
     for (Material& material : living.body.materials) material.amplitude = 0;
   if (scenario.damage > 0) do_damage(scenario.damage, random, living);
   if (living.body.springs.empty()) return life.end(Status::invalid, "no springs");
-  if (scenario.start_noise > 0) move_at_random(scenario.start_noise, random, living.state.position);
+  if (scenario.start_noise > 0)
+    move_at_random(scenario.start_noise * bounding_box(living.state.position).longest_side(), draws, random, living);
   const bool is_moved = scenario.start_noise > 0 || scenario.scene.floor != before.floor;
   if (is_moved && scenario.scene.floor) put_on_ground(living.state.position, scenario.scene);
   living.version = nullptr;

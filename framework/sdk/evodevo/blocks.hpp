@@ -20,12 +20,7 @@ inline BlockId fresh_id(Rng& rng) {
 /// Returns the id of a block that comes from another one in a certain role, such as the node that splits a link. The
 /// same innovation in two genomes has the same id (historical markings: Stanley and Miikkulainen 2002), without a table
 /// of all innovations.
-constexpr BlockId derived_id(BlockId from, std::uint32_t role) {
-  BlockId x = from + 0x9e3779b97f4a7c15 * (BlockId{role} + 1);  // the finalizer of SplitMix64 (Steele et al. 2014)
-  x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9;
-  x = (x ^ x >> 27) * 0x94d049bb133111eb;
-  return x ^ x >> 31;
-}
+constexpr BlockId derived_id(BlockId from, std::uint32_t role) { return mixed(from, role); }
 /// The same for a block that comes from two others, such as the link that joins two nodes.
 constexpr BlockId derived_id(BlockId one, BlockId other, std::uint32_t role) {
   return derived_id(derived_id(one, role) ^ other, role);

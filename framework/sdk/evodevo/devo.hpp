@@ -1,7 +1,9 @@
 // Devo operators: they change a body after each cycle of its development.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -111,6 +113,54 @@ class Memory {
   const char* of_ = "item";
 };
 
+/// What a random number is for: a name, and a number if there are several of the same name.
+struct Tag {
+  constexpr Tag(const char* name, std::uint64_t number = 0)  // NOLINT: converts on purpose
+      : Tag(std::string_view(name), number) {}
+  constexpr Tag(std::string_view name, std::uint64_t number) {
+    for (const char c : name) key = (key ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+    key = mixed(key, number);
+  }
+  std::uint64_t key = 0;
+};
+
+/// The random numbers of one application of one operator to one body. Each is a function of the key of the application,
+/// of its tag and of the identities that it is drawn for, and of nothing else: not of other numbers that were drawn.
+///
+/// With inherited draws, the key consists of the seed of development, the label of the operator and the cycle;
+/// otherwise also of the individual. Key by tag by identities -> the seed of a stream of Philox (Salmon et al. 2011).
+class Draws {
+ public:
+  /// Makes draws that nobody can use, for contexts without random numbers.
+  Draws() = default;
+  /// `origin` stands for the operator and the cycle alone; the identities of newcomers follow from it.
+  Draws(Rng::Philox philox, std::uint64_t key, std::uint64_t origin, bool inherited)
+      : philox_(philox), key_(key), origin_(origin), inherited_(inherited) {}
+
+  /// Whether relatives share the numbers.
+  bool inherited() const { return inherited_; }
+  std::uint64_t origin() const { return origin_; }
+
+  /// Returns the stream of random numbers for a tag and identities, in this order. Throws std::logic_error if the
+  /// context has no random numbers.
+  Rng stream(const Tag& tag, std::initializer_list<std::uint64_t> identities = {}) const {
+    if (philox_ == nullptr) throw std::logic_error("draws from a context that has no random numbers");
+    std::uint64_t seed = mixed(key_, tag.key);
+    for (const std::uint64_t identity : identities) seed = mixed(seed, identity);
+    return Rng(philox_, {seed, 0, 0, 0});
+  }
+
+  /// Returns the first number of that stream, uniformly distributed in [0, 1).
+  double number(const Tag& tag, std::initializer_list<std::uint64_t> identities = {}) const {
+    return stream(tag, identities).uniform();
+  }
+
+ private:
+  Rng::Philox philox_ = nullptr;
+  std::uint64_t key_ = 0, origin_ = 0;
+  bool inherited_ = false;
+};
+
 /// The context of a devo operator: everything that the operator may look at after a cycle.
 ///
 /// `stress`, `peak_force`, `muscle_work` and `tension` are the records of the last cycle, with one number for every
@@ -146,6 +196,32 @@ struct DevoContext {
   Memory spring_memory = {};  ///< what this operator remembers about each spring of `body`
   double first_time = 0;      ///< simulated time from birth to the first application of this operator, s
   double last_time = 0;       ///< simulated time from birth to its last application, s
+  std::span<const std::uint64_t> identities = {};  ///< of the masses of `body`; see identity()
+  std::span<const std::uint32_t> daughters = {};   ///< number of daughters that each mass has had; see NewMass::mother
+  Draws draws = {};                                ///< random numbers of this application; see draw()
+
+  /// Returns the identity of a mass, which is the same in all individuals that have inherited the mass: that which the
+  /// encoding gave it, or its index in the blueprint. That of a daughter follows from her mother's and from how many
+  /// daughters her mother had before; that of another mass that came later, from the operator that added it, the cycle,
+  /// and its place among the masses that were added together.
+  std::uint64_t identity(std::uint32_t mass_index) const {
+    return identities.empty() ? mass_index : identities[mass_index];
+  }
+
+  /// Returns a random number, uniformly distributed in [0, 1), that depends on its tag, on the operator and the cycle,
+  /// and on the identities of the masses that it is drawn for, of none, one or two in either order. A second call
+  /// returns the same number. With `[development] draws = "inherited"` it is the same in all individuals; otherwise
+  /// each has its own. Throws std::logic_error if the context has no random numbers.
+  double draw(const Tag& tag) const { return draws.number(tag); }
+  double draw(std::uint32_t mass_index, const Tag& tag) const { return draws.number(tag, {identity(mass_index)}); }
+  double draw(std::uint32_t a, std::uint32_t b, const Tag& tag) const {
+    const auto [low, high] = std::minmax({identity(a), identity(b)});
+    return draws.number(tag, {low, high});
+  }
+
+  /// Returns the number by which ties between masses are broken, smallest first: with inherited draws the identity,
+  /// otherwise the index.
+  std::uint64_t rank(std::uint32_t mass_index) const { return draws.inherited() ? identity(mass_index) : mass_index; }
 
   /// Returns the position from which a mass continues, m: its rest position if `resets`, else its present position.
   Vec3 position(std::uint32_t mass_index) const {
@@ -154,9 +230,11 @@ struct DevoContext {
 };
 
 struct NewMass {
-  Vec3 position;                        ///< initial position, m; the initial velocity is zero
-  double mass = 0;                      ///< kg
-  std::int32_t material = no_material;  ///< index into DevoContext::body.materials, or no_material
+  Vec3 position;                               ///< initial position, m; the initial velocity is zero
+  double mass = 0;                             ///< kg
+  std::int32_t material = no_material;         ///< index into DevoContext::body.materials, or no_material
+  std::optional<std::uint32_t> mother = {};    ///< index of the mass from which it descends; none: it is a newcomer
+  std::optional<std::uint64_t> identity = {};  ///< see DevoContext::identity(); if not given, the host derives it
 };
 
 /// A material itself, for places where the index of one would compile, too, and be taken for a stiffness.

@@ -52,6 +52,9 @@ struct Blueprint {
   /// What masses remember at birth: a number for each mass by name. Devo operators take those that they have declared
   /// under the same name (Devo::mass_memory).
   std::map<std::string, std::vector<double>> mass_memory = {};
+  /// Identities of the masses (DevoContext::identity()), all different; empty: the indices in `body`. To be given if
+  /// the same mass can have another index in a relative.
+  std::vector<std::uint64_t> identities = {};
   bool parallel = false;  ///< whether several springs may join the same pair of masses; otherwise, this is an error
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <stdexcept>  // for exceptions of prepare()
 #include <string>
 #include <vector>
@@ -33,6 +34,9 @@ struct Traits {
   std::uint32_t least_population = 1, least_children = 1;
   /// Fitness: scores depend on where the body is, not only on how it moves.
   bool depends_on_place = false;
+  /// Devo: with inherited draws and the same records, a body with one mass less gets the same edits, but for those that
+  /// concern that mass or its springs, and at most so many others. Nothing: not claimed.
+  std::optional<std::uint32_t> locality = {};
 };
 
 /// The base class of all operators. An operator holds its parameters, what prepare() computes from them, and no other

@@ -8,6 +8,15 @@
 
 namespace evodevo {
 
+/// Returns a number that stands for two others, in this order; each of its bits depends on all of theirs (the finalizer
+/// of SplitMix64: Steele et al. 2014).
+constexpr std::uint64_t mixed(std::uint64_t one, std::uint64_t other) {
+  std::uint64_t x = one + 0x9e3779b97f4a7c15 * (other + 1);
+  x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9;
+  x = (x ^ x >> 27) * 0x94d049bb133111eb;
+  return x ^ x >> 31;
+}
+
 /// Identifies a stream of random numbers. Equal keys give equal streams, on any machine and thread.
 struct StreamKey {
   std::uint64_t seed = 0;        ///< seed of the run

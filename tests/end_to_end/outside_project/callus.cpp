@@ -8,10 +8,12 @@ namespace {
 using evodevo::Spring;
 
 /// Skin that rubs against the ground gets hard. Every mass remembers how much it was in contact lately. Springs at a
-/// mass above a threshold become stiffer; a spring that has become stiffer twice is supported by a new mass in its
-/// middle. Two genes are the threshold and the amount by which springs become stiffer.
+/// mass above a threshold become stiffer, four out of five of them in each cycle; a spring that has become stiffer
+/// twice is supported by a new mass in its middle, the daughter of one of its ends. Two genes are the threshold and the
+/// amount by which springs become stiffer.
 class Callus final : public evodevo::Devo {
  public:
+  evodevo::Traits traits() const override { return {.locality = 3}; }  // another spring is supported: mass and springs
   evodevo::RecordRequest observes() const override { return {.contact = true}; }
   evodevo::Measure measure(evodevo::Causes::List) const override { return {"wear", "1"}; }
   std::vector<std::string> mass_memory() const override { return {"wear"}; }
@@ -31,6 +33,7 @@ class Callus final : public evodevo::Devo {
       const double wear = std::max(edits.mass_memory[spring.a], edits.mass_memory[spring.b]);
       edits.spring_memory.push_back(context.spring_memory[s][0]);
       if (wear <= context.own[0] || spring.stiffness_factor > 4) continue;
+      if (context.draw(spring.a, spring.b, "hardens") > 0.8) continue;
       edits.changed_springs.push_back(
           {.spring = s, .stiffness_factor = (1 + context.own[1]) * spring.stiffness_factor});
       edits.causes.changed_springs.push_back(wear);
@@ -47,7 +50,9 @@ class Callus final : public evodevo::Devo {
     const Spring& spring = context.body.springs[static_cast<std::size_t>(twice - edits.spring_memory.begin())];
     const double wear = (edits.mass_memory[spring.a] + edits.mass_memory[spring.b]) / 2;
     const auto middle = static_cast<std::uint32_t>(context.body.masses.size());
-    edits.new_masses.push_back({0.5 * (context.position(spring.a) + context.position(spring.b)), context.mass});
+    edits.new_masses.push_back({.position = 0.5 * (context.position(spring.a) + context.position(spring.b)),
+                                .mass = context.mass,
+                                .mother = std::min(spring.a, spring.b)});
     edits.causes.new_masses.push_back(wear);
     edits.mass_memory.push_back(wear);
     for (const std::uint32_t end : {spring.a, spring.b}) {

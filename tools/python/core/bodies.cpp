@@ -178,7 +178,8 @@ py::dict materials_of(const Body& body, const std::vector<std::string>& names) {
 
 GivenBody body_from(py::handle body, const std::string& place) { return BodyReader(body, place).read(); }
 
-py::object body_to_python(const Body& body, const std::vector<std::string>& material_names) {
+py::object body_to_python(const BuiltBody& built, const std::vector<std::string>& material_names) {
+  const Body& body = built.body;
   std::vector<Vec3> positions;
   for (const Mass& mass : body.masses) positions.push_back(mass.rest);
   std::vector<std::int64_t> springs;
@@ -194,7 +195,8 @@ py::object body_to_python(const Body& body, const std::vector<std::string>& mate
       "material_of"_a = column_of<std::int64_t>(body.springs, [](const Spring& spring) { return spring.material; }),
       "stiffness_factors"_a =
           column_of<double>(body.springs, [](const Spring& spring) { return spring.stiffness_factor; }),
-      "mass_materials"_a = column_of<std::int64_t>(body.masses, [](const Mass& mass) { return mass.material; }));
+      "mass_materials"_a = column_of<std::int64_t>(body.masses, [](const Mass& mass) { return mass.material; }),
+      "identities"_a = column_of<std::uint64_t>(built.identities, [](std::uint64_t identity) { return identity; }));
 }
 
 }  // namespace evodevo::python

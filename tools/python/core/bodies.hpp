@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "arrays.hpp"
+#include "life/body_building.hpp"
 #include "life/body_json.hpp"
 
 namespace evodevo::python {
@@ -14,6 +15,6 @@ namespace evodevo::python {
 GivenBody body_from(py::handle body, const std::string& place);
 
 /// Returns an unborn body of the host as an evodevo.Body. The first of its materials have names.
-py::object body_to_python(const Body& body, const std::vector<std::string>& material_names);
+py::object body_to_python(const BuiltBody& built, const std::vector<std::string>& material_names);
 
 }  // namespace evodevo::python

@@ -105,7 +105,7 @@ py::list PythonExperiment::decode(const std::vector<Genome>& genomes) const {
   }
   py::list bodies;
   for (const BuiltBody& one : built)
-    bodies.append(one.failure.empty() ? body_to_python(one.body, experiment_.context.material_names)
+    bodies.append(one.failure.empty() ? body_to_python(one, experiment_.context.material_names)
                                       : py::object(py::none()));
   return bodies;
 }

@@ -29,6 +29,7 @@ class Body:
     start_energy: float = None  #: energy that the guard against divergence allows, J; None: that of the body
     stiffness_factors: np.ndarray = 1.0  #: [m] stiffness of each spring relative to that of its material
     mass_materials: np.ndarray = -1  #: [n] the row of `materials` of each mass; -1 if it has none
+    identities: np.ndarray = None  #: [n] uint64, what each mass descends from; by default, the indices
 
     def __post_init__(self):
         positions = _array("positions", self.positions, float, (None, 3))
@@ -46,6 +47,7 @@ class Body:
                 raise ValueError(f"springs: join masses {ends}; expected indices of {n} masses")
             rest_lengths = np.linalg.norm(positions[springs[:, 1]] - positions[springs[:, 0]], axis=1)
         velocities, start_energy = self.velocities, self.start_energy
+        identities = _identities(range(n) if self.identities is None else self.identities)
         for name, value in {
             "positions": positions,
             "springs": springs,
@@ -58,6 +60,7 @@ class Body:
             "start_energy": None if start_energy is None else _number("start_energy", start_energy),
             "stiffness_factors": _array("stiffness_factors", self.stiffness_factors, float, (m,)),
             "mass_materials": _array("mass_materials", self.mass_materials, int, (n,)),
+            "identities": _array("identities", identities, np.uint64, (n,)),
         }.items():
             object.__setattr__(self, name, value)
 
@@ -78,6 +81,7 @@ class Body:
             start_energy=json.get("start_energy"),
             stiffness_factors=[spring.get("stiffness_factor", 1) for spring in springs],
             mass_materials=[mass.get("material", -1) for mass in masses],
+            identities=[mass.get("identity", i) for i, mass in enumerate(masses)],
         )
 
     @property
@@ -87,10 +91,12 @@ class Body:
         if self.velocities is not None:
             for mass, velocity in zip(masses, self.velocities.tolist()):
                 mass["velocity"] = velocity
-        for mass, weight, material in zip(masses, self.masses.tolist(), self.mass_materials.tolist()):
+        for mass, weight, material, identity in zip(masses, self.masses.tolist(), self.mass_materials.tolist(),
+                                                    self.identities.tolist()):
             mass["mass"] = weight
             if material >= 0:
                 mass["material"] = material
+            mass["identity"] = identity
         springs = [{"a": a, "b": b, "rest_length": length, "material": material}
                    for (a, b), length, material in zip(self.springs.tolist(), self.rest_lengths.tolist(),
                                                        self.material_of.tolist())]
@@ -127,6 +133,14 @@ def _number(name, value):
         return float(value)
     except (TypeError, ValueError) as error:
         raise ValueError(f"{name}: {error}; expected a number") from None
+
+
+def _identities(values):
+    """Returns identities as an array. Raises ValueError."""
+    try:
+        return np.array(values, dtype=np.uint64)  # of a list with large numbers, numpy would make floats
+    except (TypeError, ValueError, OverflowError) as error:
+        raise ValueError(f"identities: {error}; expected whole numbers from 0 to 2^64 - 1") from None
 
 
 def _array(name, values, kind, shape):

@@ -15,7 +15,7 @@ from .body import Body
 from .errors import ArchiveError
 from .program import json_of, output_of
 
-FORMAT = 13  # of the archive
+FORMAT = 14  # of the archive
 
 
 def _gene_name(names, count, gene):

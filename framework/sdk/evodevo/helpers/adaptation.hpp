@@ -38,7 +38,8 @@ class Adaptation : public Devo {
       springs.push_back(s);
       stress.push_back(stress_of[s]);
     }
-    for (const std::uint32_t i : most_stressed(stress, static_cast<std::size_t>(springs_), rng)) {
+    Chance chance(context, rng);
+    for (const std::uint32_t i : most_stressed(stress, static_cast<std::size_t>(springs_), chance)) {
       const double before = value(context.body, springs[i]),
                    after = within_bounds(before, factor_ * before, low_, high_);
       const std::optional<ChangedSpring> change = changed(context.body, springs[i], after);

@@ -36,8 +36,8 @@ struct ArrivalRule {
 /// the material of a random spring of the body.
 class Arrivals {
  public:
-  Arrivals(const ArrivalRule& rule, const DevoContext& context)
-      : rule_(rule), context_(context), stays_(context.body.masses.size(), true) {
+  Arrivals(const ArrivalRule& rule, const DevoContext& context, Chance& chance)
+      : rule_(rule), context_(context), chance_(chance), stays_(context.body.masses.size(), true) {
     if (rule.where != "by-stress") return;
     stress_ = rule.measure.of(context);
     lottery_ = StressLottery(stress_);
@@ -47,11 +47,15 @@ class Arrivals {
   /// joined to it.
   void set_staying(std::uint32_t mass, bool stays) { stays_[mass] = stays; }
 
-  /// Finds a free position for one more mass. Returns false if all attempts fail.
-  bool find_position(Rng& rng) {
+  /// Finds a free position for one more mass. Returns false if all attempts fail. With inherited draws, the places that
+  /// are tried follow from how often this function was called before.
+  bool find_position() {
+    const std::uint64_t slot = slots_++;
+    Rng& place = chance_.stream({"place", slot});
     for (int attempt = 0; attempt < attempts_per_position; ++attempt) {
-      const std::optional<std::uint32_t> spring = lottery_.empty() ? std::nullopt : std::optional(lottery_.draw(rng));
-      const Vec3 position = spring ? position_on_spring(*spring, rng) : position_in_bounds(rng);
+      const std::optional<std::uint32_t> spring =
+          lottery_.empty() ? std::nullopt : std::optional(lottery_.draw(chance_).spring);
+      const Vec3 position = spring ? position_on_spring(*spring, place) : position_in_bounds(place);
       if (!is_free(position)) continue;
       positions_.push_back(position);
       if (spring) causes_.push_back(stress_[*spring]);
@@ -62,14 +66,14 @@ class Arrivals {
 
   /// Adds to `edits` one mass for each position found, and its springs. Returns false without adding anything if all
   /// masses that stay are air, because the new masses and all of their springs would be air too.
-  bool come(Edits& edits, Rng& rng) const {
+  bool come(Edits& edits) {
     auto partners = masses_where([&](std::uint32_t i) { return stays_[i]; });
     const auto models = masses_where([&](std::uint32_t i) { return stays_[i] && !is_of_air(i); });
     if (models.empty()) return false;
-    for (const Vec3& position : positions_) {
-      const auto model = models[rng.below(static_cast<std::uint32_t>(models.size()))];
-      edits.new_masses.push_back({position, context_.mass, context_.body.masses[model].material});
-      join(partners, edits, rng);
+    for (std::uint64_t number = 0; number < positions_.size(); ++number) {
+      const std::uint32_t model = chance_.one_of(models, {"model", number});
+      edits.new_masses.push_back({positions_[number], context_.mass, context_.body.masses[model].material});
+      join(partners, number, edits);
     }
     edits.causes.new_masses = causes_;
     return true;
@@ -102,26 +106,46 @@ class Arrivals {
     return true;
   }
 
-  /// Adds springs from the newest mass to several of `partners`; changes the order of `partners`.
-  void join(std::vector<std::uint32_t>& partners, Edits& edits, Rng& rng) const {
+  /// Adds springs from the newest mass, which has this number among the new ones, to several of `partners`; changes the
+  /// order of `partners`.
+  void join(std::vector<std::uint32_t>& partners, std::uint64_t number, Edits& edits) {
     const Body& body = context_.body;
     const auto newest = static_cast<std::uint32_t>(body.masses.size() + edits.new_masses.size() - 1);
     const std::int32_t own = edits.new_masses.back().material;
     const auto count = static_cast<std::uint32_t>(partners.size());
-    if (rule_.join == "nearest")
+    const bool random = rule_.join == "random", inherited = chance_.inherited();
+    if (!random)
       sort_nearest_first(partners, static_cast<std::size_t>(rule_.springs), edits.new_masses.back().position, context_);
+    else if (inherited)
+      sort_by_number(partners, {"partner", number});
     for (std::uint32_t i = 0; i < std::min<std::int64_t>(count, rule_.springs); ++i) {
-      if (rule_.join == "random") std::swap(partners[i], partners[i + rng.below(count - i)]);
+      if (random && !inherited) std::swap(partners[i], partners[i + chance_.rng().below(count - i)]);
       const auto mixed = material_between(body, own, body.masses[partners[i]].material);
       edits.new_springs.push_back(mixed ? NewSpring{partners[i], newest, *mixed, {}}
-                                        : like_a_random_spring(partners[i], newest, rng));
+                                        : like_a_random_spring(partners[i], newest, number));
     }
   }
 
+  /// Moves as many masses as a new mass is joined to to the front of `masses`: those with the smallest numbers.
+  void sort_by_number(std::vector<std::uint32_t>& masses, const Tag& tag) const {
+    std::vector<std::pair<double, std::uint32_t>> order;
+    for (const std::uint32_t mass : masses) order.emplace_back(context_.draw(mass, tag), mass);
+    const auto count = std::min(order.size(), static_cast<std::size_t>(rule_.springs));
+    std::ranges::partial_sort(order, order.begin() + static_cast<std::ptrdiff_t>(count));
+    std::ranges::transform(order, masses.begin(), [](const auto& item) { return item.second; });
+  }
+
   /// Returns a new spring with the stiffness, amplitude, frequency and phase of a random one, now and later.
-  NewSpring like_a_random_spring(std::uint32_t a, std::uint32_t b, Rng& rng) const {
+  NewSpring like_a_random_spring(std::uint32_t a, std::uint32_t b, std::uint64_t number) {
     const auto& springs = context_.body.springs;
-    const Spring& model = springs[rng.below(static_cast<std::uint32_t>(springs.size()))];
+    std::uint32_t index = 0;
+    if (chance_.inherited()) {
+      if (!ring_) ring_ = chance_.ring_of_springs();
+      index = ring_->at(context_.draw(a, {"like", number}));
+    } else {
+      index = chance_.rng().below(static_cast<std::uint32_t>(springs.size()));
+    }
+    const Spring& model = springs[index];
     return {a, b, context_.body.materials[model.material], {}, model.stiffness_factor, model.phase_growth};
   }
 
@@ -140,8 +164,11 @@ class Arrivals {
 
   const ArrivalRule& rule_;
   const DevoContext& context_;
+  Chance& chance_;
+  std::uint64_t slots_ = 0;     ///< how often a position was searched for
   std::vector<double> stress_;  ///< stress of every spring; empty unless it determines where masses are placed
   StressLottery lottery_;
+  std::optional<Ring> ring_;  ///< of the springs, once one is drawn
   std::vector<bool> stays_;
   std::vector<Vec3> positions_;
   std::vector<double> causes_;  ///< for each position, the stress of the spring that it is on; empty if `stress_` is

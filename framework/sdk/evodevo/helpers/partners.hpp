@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -62,15 +63,15 @@ inline std::vector<std::int64_t> degrees(const Body& body) {
   return degree;
 }
 
-/// Moves the `count` masses that are nearest to a position to the front of `masses`, nearest first, ties by index. The
-/// order of the others is not specified. Distances are those of DevoContext::position().
+/// Moves the `count` masses that are nearest to a position to the front of `masses`, nearest first, ties by
+/// DevoContext::rank(). The order of the others is not specified. Distances are those of DevoContext::position().
 inline void sort_nearest_first(std::vector<std::uint32_t>& masses, std::size_t count, const Vec3& position,
                                const DevoContext& context) {
-  std::vector<std::pair<double, std::uint32_t>> order;
-  for (const std::uint32_t i : masses) order.emplace_back(norm(context.position(i) - position), i);
+  std::vector<std::tuple<double, std::uint64_t, std::uint32_t>> order;
+  for (const std::uint32_t i : masses) order.emplace_back(norm(context.position(i) - position), context.rank(i), i);
   const auto needed = static_cast<std::ptrdiff_t>(std::min(order.size(), count));
   std::partial_sort(order.begin(), order.begin() + needed, order.end());
-  std::transform(order.begin(), order.end(), masses.begin(), [](const auto& item) { return item.second; });
+  std::transform(order.begin(), order.end(), masses.begin(), [](const auto& item) { return std::get<2>(item); });
 }
 
 }  // namespace evodevo
