@@ -52,6 +52,11 @@ class Refusable final : public Parameters {
     add(name, "none of the options");
   }
   void vector(Vec3&, std::string_view name, Range, std::string_view) override { add(name, 1.0); }
+  void vector_or_choice(Vec3&, std::string&, std::string_view name, Range, std::initializer_list<std::string_view>,
+                        std::string_view) override {
+    add(name, "none of the options");
+    add(name, 1.0);
+  }
   void counts(std::array<std::int64_t, 3>&, std::string_view name, Range, std::string_view) override { add(name, 1); }
   void optional_real(std::optional<double>&, std::string_view name, Range range, std::string_view) override {
     add(name, "text");
@@ -174,6 +179,11 @@ class Changer final : public Parameters {
   }
   void vector(Vec3& value, std::string_view, Range range, std::string_view) override {
     value.x = other(value.x, range);
+  }
+  void vector_or_choice(Vec3&, std::string& word, std::string_view, Range,
+                        std::initializer_list<std::string_view> options, std::string_view) override {
+    for (const std::string_view option : options)
+      if (option != word) return void(word = option);
   }
   void counts(std::array<std::int64_t, 3>& value, std::string_view, Range range, std::string_view) override {
     value[0] = static_cast<std::int64_t>(other(static_cast<double>(value[0]), range));

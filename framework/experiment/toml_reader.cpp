@@ -194,6 +194,18 @@ void TomlReader::vector(Vec3& value, std::string_view name, Range range, std::st
   });
 }
 
+void TomlReader::vector_or_choice(Vec3& value, std::string& word, std::string_view name, Range range,
+                                  std::initializer_list<std::string_view> options, std::string_view text) {
+  read(name, [&](const toml::node& node) {
+    if (node.is_string()) return choice(word, name, options, text);
+    if (!node.is_array())
+      fail_at(node, name,
+              "expected three numbers, or one of " + joined(std::vector<std::string>(options.begin(), options.end())));
+    vector(value, name, range, text);
+    word.clear();
+  });
+}
+
 void TomlReader::counts(std::array<std::int64_t, 3>& value, std::string_view name, Range range, std::string_view) {
   read(name, [&](const toml::node& node) {
     const toml::array& array = three(node, name);

@@ -17,6 +17,14 @@ void TomlWriter::vector(Vec3& value, std::string_view name, Range, std::string_v
   add(name, toml::array{value.x, value.y, value.z});
 }
 
+void TomlWriter::vector_or_choice(Vec3& value, std::string& word, std::string_view name, Range range,
+                                  std::initializer_list<std::string_view> options, std::string_view text) {
+  if (word.empty())
+    vector(value, name, range, text);
+  else
+    choice(word, name, options, text);
+}
+
 void TomlWriter::counts(std::array<std::int64_t, 3>& value, std::string_view name, Range, std::string_view) {
   add(name, toml::array{value[0], value[1], value[2]});
 }

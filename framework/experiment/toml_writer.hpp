@@ -17,6 +17,8 @@ class TomlWriter final : public SettingsVisitor {
   void choice(std::string& value, std::string_view name, std::initializer_list<std::string_view> options,
               std::string_view text) override;
   void vector(Vec3& value, std::string_view name, Range range, std::string_view text) override;
+  void vector_or_choice(Vec3& value, std::string& word, std::string_view name, Range range,
+                        std::initializer_list<std::string_view> options, std::string_view text) override;
   void counts(std::array<std::int64_t, 3>& value, std::string_view name, Range range, std::string_view text) override;
   void optional_real(std::optional<double>& value, std::string_view name, Range range, std::string_view text) override;
   void reals(std::vector<double>& value, std::string_view name, Range range, std::string_view text) override;

@@ -25,13 +25,16 @@ class DeclarationCheck final : public Parameters {
   void choice(std::string& value, std::string_view name, std::initializer_list<std::string_view> options,
               std::string_view text) override {
     declare(name, text);
-    if (std::find(options.begin(), options.end(), value) == options.end())
-      wrong_defaults.push_back(std::string(name) + " = \"" + value +
-                               "\" is not one of its options; correct the default or the options");
+    check_option(name, value, options);
   }
   void vector(Vec3& value, std::string_view name, Range range, std::string_view text) override {
     declare(name, text);
     for (const double part : {value.x, value.y, value.z}) check(name, part, range);
+  }
+  void vector_or_choice(Vec3& value, std::string& word, std::string_view name, Range range,
+                        std::initializer_list<std::string_view> options, std::string_view text) override {
+    vector(value, name, range, text);
+    if (!word.empty()) check_option(name, word, options);
   }
   void counts(std::array<std::int64_t, 3>& value, std::string_view name, Range range, std::string_view text) override {
     declare(name, text);
@@ -74,6 +77,12 @@ class DeclarationCheck final : public Parameters {
     if (name.empty()) fault(name, "has no name");
     if (text.size() <= 10 || !text.ends_with('.'))
       fault(name, "is not described by a sentence that ends with a full stop");
+  }
+
+  void check_option(std::string_view name, const std::string& value, std::initializer_list<std::string_view> options) {
+    if (std::find(options.begin(), options.end(), value) == options.end())
+      wrong_defaults.push_back(std::string(name) + " = \"" + value +
+                               "\" is not one of its options; correct the default or the options");
   }
 
   void check(std::string_view name, double value, Range range) {

@@ -40,13 +40,18 @@ class Describer : public Visitor {
   void choice(std::string& value, std::string_view name, std::initializer_list<std::string_view> options,
               std::string_view text) override {
     add(name, "option", in_quotes(value), {}, text);
-    std::vector<std::string> names;
-    for (const std::string_view option : options) names.push_back(in_quotes(option));
-    found.back().allowed = printable(joined(names), 2000);
+    found.back().allowed = quoted(options);
   }
   void vector(Vec3& value, std::string_view name, Range range, std::string_view text) override {
     add(name, "three numbers", "[" + to_text(value.x) + ", " + to_text(value.y) + ", " + to_text(value.z) + "]", range,
         text);
+  }
+  void vector_or_choice(Vec3& value, std::string& word, std::string_view name, Range range,
+                        std::initializer_list<std::string_view> options, std::string_view text) override {
+    vector(value, name, range, text);
+    if (!word.empty()) found.back().fallback = printable(in_quotes(word));
+    found.back().type += " or option";
+    found.back().allowed += ", or " + quoted(options);
   }
   void counts(std::array<std::int64_t, 3>& value, std::string_view name, Range range, std::string_view text) override {
     add(name, "three whole numbers",
@@ -84,6 +89,11 @@ class Describer : public Visitor {
 
  private:
   static std::string in_quotes(std::string_view text) { return '"' + std::string(text) + '"'; }
+  static std::string quoted(std::initializer_list<std::string_view> options) {
+    std::vector<std::string> names;
+    for (const std::string_view option : options) names.push_back(in_quotes(option));
+    return printable(joined(names), 2000);
+  }
 };
 
 /// Describes the parameters of an operator in the order of their declaration. All of them must still have their default

@@ -1,6 +1,5 @@
 // "The distance a robot can travel in a given direction [...] in terms of the number of body-lengths covered" (paper,
 // section IV-E).
-#include <stdexcept>
 
 #include "evodevo/helpers/window.hpp"
 #include "evodevo/plugin.hpp"
@@ -13,8 +12,7 @@ namespace {
 class Distance final : public evodevo::Fitness {
  public:
   void parameters(evodevo::Parameters& p) override {
-    p.vector(direction_, "direction", {-1000, 1000, "1"},
-             "Direction in which the distance is measured: a vector of any length above 0.");
+    direction_.declare(p);
     p.optional_real(length_, "length", {1e-6, 1e6, "m"},
                     "Body length in which distances are measured; without it, the longest side of each body when the "
                     "window opens.");
@@ -25,8 +23,7 @@ class Distance final : public evodevo::Fitness {
   }
 
   evodevo::Request observes() const override {
-    if (!(norm(direction_) > 0)) throw std::invalid_argument("direction must be longer than 0");
-    evodevo::Request request = window_.request();
+    evodevo::Request request = direction_.with_direction(window_.request());
     if (developing_) request.cycle = 0;
     return request;
   }
@@ -37,12 +34,11 @@ class Distance final : public evodevo::Fitness {
     const evodevo::Box& box = observation.box;
     // a body whose masses all lie at one point has no length, and neither does a body with a NaN position
     if (!(norm(box.high - box.low) > 0)) return {std::numeric_limits<double>::quiet_NaN()};
-    const evodevo::Vec3 way = observation.centre_after - observation.centre_before;
-    return {dot(way, direction_) / norm(direction_) / length_.value_or(box.longest_side())};
+    return {direction_.distance(observation) / length_.value_or(box.longest_side())};
   }
 
  private:
-  evodevo::Vec3 direction_ = {1, 0, 0};
+  evodevo::MeasuredDirection direction_;
   std::optional<double> length_;
   bool developing_ = false;
   evodevo::MeasuringWindow window_;

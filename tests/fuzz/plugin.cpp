@@ -29,7 +29,7 @@ struct Declared {
   InputFile file;
   std::vector<std::string> materials;
 
-  static constexpr std::size_t types = 12;
+  static constexpr std::size_t types = 13;
 };
 
 std::string text_in(Input& input) { return std::string(input.text()); }
@@ -88,7 +88,7 @@ class Fuzzed final : public Fitness {
       std::vector<double> numbers;
       if (one.type == 0) numbers = {one.real};
       if (one.type == 1) numbers = {static_cast<double>(one.integer)};
-      if (one.type == 4) numbers = {one.vector.x, one.vector.y, one.vector.z};
+      if (one.type == 4 || (one.type == 11 && one.option.empty())) numbers = {one.vector.x, one.vector.y, one.vector.z};
       if (one.type == 5) numbers = {one.counts.begin(), one.counts.end()};
       if (one.type == 6 && one.optional_real) numbers = {*one.optional_real};
       if (one.type == 7) numbers = one.reals;
@@ -114,6 +114,9 @@ class Fuzzed final : public Fitness {
     if (one.type == 8) return p.text(one.words, one.name, one.text);
     if (one.type == 9) return p.file(one.file, one.name, one.text);
     if (one.type == 10) return p.materials(one.materials, one.name, one.text);
+    if (one.type == 11)
+      return p.vector_or_choice(one.vector, one.option, one.name, range,
+                                {one.options[0], one.options[1], one.options[2]}, one.text);
     p.require(one.flag, one.name, one.text);
   }
 

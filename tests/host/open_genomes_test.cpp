@@ -138,12 +138,15 @@ struct Holder {
   std::vector<double> levels = {1, 2};
   std::string motto = "none";
   InputFile cloud;
+  Vec3 way{1, 0, 0};
+  std::string aim;
 
   void declare(Parameters& p) {
     p.optional_real(rate, "rate", {0, 5, "1"}, "A rate that may be left out.");
     p.reals(levels, "levels", {-3, 3, "1"}, "Some levels.");
     p.text(motto, "motto", "A motto.");
     p.file(cloud, "cloud", "A cloud of points.");
+    p.vector_or_choice(way, aim, "way", {-2, 2, "m"}, {"home", "away"}, "A way, or where it leads.");
   }
 };
 
@@ -173,7 +176,7 @@ TEST_F(NewParameters, KeepTheirDefaultsOrAreReadAndWrittenBack) {
   EXPECT_TRUE(unset.cloud.path.empty());
   EXPECT_TRUE(files_.empty());
   std::ofstream(scratch_ / "points.txt") << std::string("1 2 3\n\0", 7);
-  Holder holder = read("rate = 2.5\nlevels = [-3, 0.5]\nmotto = \"so\"\ncloud = \"points.txt\"");
+  Holder holder = read("rate = 2.5\nlevels = [-3, 0.5]\nmotto = \"so\"\ncloud = \"points.txt\"\nway = \"away\"");
   TomlWriter writer;
   holder.declare(writer);
   std::ostringstream text;
@@ -183,6 +186,9 @@ TEST_F(NewParameters, KeepTheirDefaultsOrAreReadAndWrittenBack) {
   EXPECT_EQ(again.rate, 2.5);
   EXPECT_THAT(again.levels, ::testing::ElementsAre(-3, 0.5));
   EXPECT_EQ(again.motto, "so");
+  EXPECT_EQ(again.aim, "away");
+  EXPECT_EQ(read("way = [0, -2, 1]").way, (Vec3{0, -2, 1}));
+  EXPECT_EQ(read("way = [0, -2, 1]").aim, "");
   EXPECT_EQ(again.cloud.content, std::string("1 2 3\n\0", 7)) << "from the record, though the file is gone";
 }
 
@@ -190,6 +196,9 @@ TEST_F(NewParameters, RefuseWhatDoesNotFit) {
   EXPECT_THAT(complaint_of("rate = 6"), testing::naming("t.rate = 6", "0 to 5"));
   EXPECT_THAT(complaint_of("levels = [1, 4]"), testing::naming("t.levels", "4", "-3 to 3"));
   EXPECT_THAT(complaint_of("levels = 1"), testing::naming("t.levels = 1", "list"));
+  EXPECT_THAT(complaint_of("way = \"hom\""), testing::naming("t.way = \"hom\"", "home"));
+  EXPECT_THAT(complaint_of("way = 3"), testing::naming("t.way = 3", "three numbers", "home, away"));
+  EXPECT_THAT(complaint_of("way = [0, 3, 0]"), testing::naming("t.way = 3", "-2 to 2"));
   EXPECT_THAT(complaint_of("motto = 3"), testing::naming("t.motto = 3", "text"));
   EXPECT_THAT(complaint_of("cloud = \"points.txt\""), testing::naming("t.cloud", "points.txt"));
   EXPECT_THAT(complaint_of("cloud = \".\""), testing::naming("t.cloud", "folder"));

@@ -27,6 +27,41 @@ TEST(Distance, IsTheWayInBodyLengthsOrInAGivenLength) {
   EXPECT_DOUBLE_EQ(distance("length = 0.5", longer), 6);
 }
 
+/// An observation of a body 2 m long that first moves by `first`, in the first fifth of its window, and by `way` in
+/// all.
+struct Turning {
+  std::vector<StoredSample> stored;
+  Observation observation = moved();
+
+  Turning(Vec3 first, Vec3 way) : stored(6) {
+    observation.centre_after = observation.centre_before + way;
+    for (StoredSample& sample : stored) sample.centre = observation.centre_after;
+    stored[0].centre = observation.centre_before;
+    stored[1].centre = observation.centre_before + first;
+    std::vector<const StoredSample*> samples;
+    for (const StoredSample& sample : stored) samples.push_back(&sample);
+    observation.samples = Samples(samples, {.centre = true});
+  }
+};
+
+TEST(Distance, InAnyDirectionIsTheWayAlongTheGroundAndAlongTheHeadingThatWhichKeepsItsCourse) {
+  EXPECT_DOUBLE_EQ(distance("direction = 'any'", moved()), 2.5) << "(3, 4) m, 2 m long; the height counts for nothing";
+  const struct {
+    Vec3 first, way;
+    double lengths;
+  } cases[] = {{{0, 0.1, 0}, {0, 4, 0}, 2},   {{0, 0.1, 5}, {3, 4, 0}, 2}, {{0.1, 0, 0}, {0, 4, 0}, 0},
+               {{-0.1, 0, 0}, {4, 0, 0}, -2}, {{0, 0, 0}, {3, 4, 0}, 0},   {{0.3, 0.4, 0}, {3, 4, -9}, 2.5}};
+  for (const auto& [first, way, lengths] : cases)
+    EXPECT_NEAR(distance("direction = 'heading'", Turning(first, way).observation), lengths, 1e-12);
+  EXPECT_TRUE(std::isnan(distance("direction = 'heading'", Turning({std::nan(""), 0, 0}, {1, 0, 0}).observation)));
+  const Request request = make<Fitness>("distance", "direction = 'heading'\nwindow = 4.0")->observes();
+  EXPECT_EQ(request.rate, 1.25) << "a sample at each fifth";
+  EXPECT_TRUE(request.channels.centre);
+  EXPECT_EQ(make<Fitness>("distance", "direction = 'any'")->observes().rate, 0) << "what is not needed is not sampled";
+  Observation worked = moved(20);
+  EXPECT_DOUBLE_EQ(make<Fitness>("efficiency", "direction = 'any'")->score(worked).at(0), 5 / 20.0);
+}
+
 TEST(Distance, IsNoNumberWhereTheBodyHasNoLengthOrAPlaceIsNoNumber) {
   Observation point = moved(), still = moved(), lost = moved(), exploded = moved();
   point.box = still.box = {{1, 1, 1}, {1, 1, 1}};

@@ -41,6 +41,9 @@ class Parameters {
                       std::string_view text) = 0;
   /// A vector of three real numbers, each within the range.
   virtual void vector(Vec3& value, std::string_view name, Range range, std::string_view text) = 0;
+  /// A vector of three real numbers, each within the range, or one of the words; `word` is empty if it is a vector.
+  virtual void vector_or_choice(Vec3& value, std::string& word, std::string_view name, Range range,
+                                std::initializer_list<std::string_view> options, std::string_view text) = 0;
   /// A vector of three whole numbers, each within the range.
   virtual void counts(std::array<std::int64_t, 3>& value, std::string_view name, Range range,
                       std::string_view text) = 0;
