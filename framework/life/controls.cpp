@@ -150,6 +150,7 @@ class RandomPlacement {
         ++surplus_;
     }
     const std::size_t made_up = std::min(surplus_, due.size());
+    // with inherited draws, the order says only who is left out
     if (made_up > 0 || !chance_.inherited()) chance_.stream("due").shuffle(due);
     due.resize(due.size() - made_up);
     surplus_ -= made_up;

@@ -200,7 +200,7 @@ void DevelopmentLoop::apply_operator(Life& life, int cycle, std::size_t index) c
   DevoContext context = context_of(life, cycle, schedule, devo_request(experiment_, index), genome, own);
   context.mass_memory = memory.masses.view("mass");
   context.spring_memory = memory.springs.view("spring");
-  context.draws = draws_for(experiment_, life.newborn, label, static_cast<std::uint64_t>(cycle));
+  context.draws = draws_for(experiment_, life.newborn, "operator " + label, static_cast<std::uint64_t>(cycle));
   Rng rng = stream_of(life, context.draws, rng_stream::devo(index, cycle));
   const auto develop = [&] {
     Edits edits;

@@ -64,7 +64,8 @@ class DevelopmentLoop {
                          const Genome& genome = no_genes, const Genome& own = no_genes) const;
   /// The random choices of what changes a body, or of what is recorded of it.
   struct Choices;
-  /// Returns the stream from which the operator with this index, which does not draw by identity, draws after a cycle.
+  /// Returns the stream for numbers that are drawn one after the other: with inherited draws one of `draws`, otherwise
+  /// the stream `id` of the individual.
   Rng stream_of(const Life& life, const Draws& draws, std::uint32_t id) const;
   /// Applies a change and records it.
   void make(Change change, Life& life) const;

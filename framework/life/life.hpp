@@ -27,8 +27,8 @@ struct Newborn {
 };
 
 /// Returns the random numbers of one part of a newborn's life, such as an application of a devo operator. `what` names
-/// the part, and `number` tells parts of the same name apart. Inherited draws depend on these two, the seed of development
-/// and the number of the life; others on these two, the run's seed, the generation and the id.
+/// the part, and `number` tells parts of the same name apart. Inherited draws depend on these two, the seed of
+/// development and the number of the life; others on these two, the run's seed, the generation and the id.
 Draws draws_for(const Experiment& experiment, const Newborn& newborn, std::string_view what, std::uint64_t number);
 
 /// A score of a matured body in one repeat of one scenario.

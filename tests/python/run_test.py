@@ -91,6 +91,8 @@ class OfASmallRun(unittest.TestCase):
         changes = life["event"].value_counts()
         self.assertEqual(len(matured.springs), len(born.springs) + changes.get("come", 0) - changes.get("gone", 0))
         self.assertTrue((life["cause"].dropna() >= 0).all())
+        self.assertEqual(list(matured.identities), list(born.identities))  # no mass comes or goes
+        self.assertEqual(evodevo.Body.from_json(matured.json).identities.dtype, np.uint64)
 
     def test_bodies_read_back_as_they_were_printed(self):
         champion = self.run_.best().index[0]

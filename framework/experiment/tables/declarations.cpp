@@ -79,7 +79,8 @@ void declare_simulation(SettingsVisitor& v, Settings& s) {
 
 void declare_development(SettingsVisitor& v, Settings& s) {
   DevelopmentSettings& d = s.development;
-  v.integer(d.cycles, "cycles", {0, rng_stream::most_cycles}, "Number of cycles of simulation and development; by default 0 if there is no devo operator.");
+  v.integer(d.cycles, "cycles", {0, rng_stream::most_cycles},
+            "Number of cycles of simulation and development; by default 0 if there is no devo operator.");
   v.real(d.cycle_time, "cycle_time", {s.step.dt.value_or(shortest_cycle), 1e6, "s"}, "Simulated time of one cycle.");
   v.flag(d.reset, "reset", "Whether the body returns to its rest positions after every cycle.");
   choice(v, d.draws, "draws",

@@ -209,10 +209,13 @@ class Run:
 
     def life(self, individual):
         """Returns the edits that development made to a robot, a row for each, in their order: cycle, operator, event,
-        spring (two numbers of masses) or mass, cause, measure, unit, and so on; the columns are those of `evodevo life
-        --json`. Simulates the development again with `program()`."""
-        told = json_of("life", self.folder, "--individual", individual, "--json")
-        return pd.DataFrame(told["edits"])
+        spring (two numbers of masses) or mass, identity (of a mass, UInt64), cause, measure, unit, and so on; the columns
+        are those of `evodevo life --json`. Simulates the development again with `program()`."""
+        edits = json_of("life", self.folder, "--individual", individual, "--json")["edits"]
+        frame = pd.DataFrame(edits)
+        if "identity" in frame:  # springs have none, and floats would not hold those of masses
+            frame["identity"] = pd.array([edit.get("identity") for edit in edits], dtype="UInt64")
+        return frame
 
     def body(self, individual, matured=False):
         """Returns the Body of an individual, as it was born or, if `matured`, after its development, which is then
