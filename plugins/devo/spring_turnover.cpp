@@ -70,9 +70,8 @@ class Candidates {
     const bool swapped =
         chance_.inherited() ? chance_.number_of(index, {"side", round}) < 0.5 : chance_.rng().chance(0.5);
     if (swapped) std::swap(from, past);
-    const std::uint32_t to = chance_.one_of(
-        partners_.of(past),
-        {"partner", evodevo::mixed(evodevo::mixed(round, context_.identity(from)), context_.identity(past))});
+    const std::uint64_t key = evodevo::mixed(evodevo::mixed(round, context_.identity(from)), context_.identity(past));
+    const std::uint32_t to = chance_.one_of(partners_.of(past), {"partner", key});
     return {to == from ? std::minmax({from, past}) : std::minmax({from, to}), index};
   }
 
@@ -91,16 +90,16 @@ class Leaving {
   Leaving(std::vector<std::uint32_t> springs, Chance& chance)
       : springs_(std::move(springs)), gone_(springs_.size(), false), chance_(chance) {}
 
-  /// Returns the spring that gives way to the next new one: the least stressed. If the new spring takes over its
-  /// material and draws are inherited, it is one that follows from `number` instead, so that one new spring more or
-  /// less leaves most of the others with the same material.
-  std::uint32_t next(bool hands_material_on, std::uint64_t number) {
+  /// Returns the spring that gives way to a new one between two masses: the least stressed. If the new spring takes
+  /// over its material and draws are inherited, it is one that follows from the masses instead, so that one new spring
+  /// more or less leaves most of the others with the same material.
+  std::uint32_t next(bool hands_material_on, const Pair& masses) {
     while (gone_[first_]) ++first_;
     place_ = first_;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = first_; hands_material_on && chance_.inherited() && i < springs_.size(); ++i) {
       if (gone_[i]) continue;
-      const double drawn = chance_.number_of(springs_[i], {"leaves", number});
+      const double drawn = chance_.number_of(springs_[i], {"leaves", chance_.key_of(masses.first, masses.second)});
       if (drawn < least) place_ = i;
       least = std::min(least, drawn);
     }
@@ -155,7 +154,7 @@ class SpringTurnover final : public evodevo::Devo {
       if (partners.joined(a, b) || taken.contains(pair) || !(norm(context.position(b) - context.position(a)) > 0))
         continue;
       const auto mixed = material_between(body, body.masses[a].material, body.masses[b].material);
-      const std::uint32_t leaves = leaving.next(!mixed, attempt);
+      const std::uint32_t leaves = leaving.next(!mixed, pair);
       const evodevo::Spring& gone = body.springs[leaves];
       const Material material = mixed ? *mixed : body.materials[gone.material];
       if (is_air(material)) continue;

@@ -117,6 +117,25 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"crashing", {"Segmentation fault"}, "same-seed"}),
     [](const auto& broken) { return broken.param.plugin; });
 
+TEST(Conformance, ChangesStayLocalWhereverSpringsAndMassesCome) {
+  const Scratch scratch;
+  std::ifstream file(EVODEVO_EXPERIMENTS "/quickstart.toml");
+  const std::string quickstart(std::istreambuf_iterator<char>(file), {}),
+      own = "name = \"spring-turnover\"\nsprings = 8";
+  ASSERT_NE(quickstart.find(own), quickstart.npos);
+  for (const auto& [name, keys] : {std::pair{"spring-turnover", "where = 'most-stressed'\nsprings = 125"},
+                                   {"spring-turnover", "where = 'by-stress'\nsprings = 125"},
+                                   {"mass-turnover", "where = 'by-stress'\njoin = 'nearest'"},
+                                   {"mass-growth", "where = 'by-stress'"}}) {
+    std::string text = quickstart;
+    text.replace(text.find(own), own.size(), "name = \"" + std::string(name) + "\"\n" + keys);
+    const Words options{"--experiment", scratch.write("experiment.toml", text), "--case", "locality"};
+    EXPECT_EQ(verdicts(builtin_plugin_folder() / (std::string(name) + ".evodevo.so"), 0, options).at("locality"),
+              "passed ")
+        << name << " with " << keys;
+  }
+}
+
 TEST(Conformance, ALibraryThatDoesNotLoadIsToldAlone) {
   const Outcomes outcomes = verdicts(faulty("undefined_symbol"), 1);
   ASSERT_EQ(outcomes.size(), 1u);

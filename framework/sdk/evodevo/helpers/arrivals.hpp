@@ -48,17 +48,22 @@ class Arrivals {
   void set_staying(std::uint32_t mass, bool stays) { stays_[mass] = stays; }
 
   /// Finds a free position for one more mass. Returns false if all attempts fail. With inherited draws, the places that
-  /// are tried follow from how often this function was called before.
+  /// are tried follow from how often this function was called before or, on springs, from the springs.
   bool find_position() {
     const std::uint64_t slot = slots_++;
-    Rng& place = chance_.stream({"place", slot});
+    Rng* place = &chance_.stream({"place", slot});
     for (int attempt = 0; attempt < attempts_per_position; ++attempt) {
-      const std::optional<std::uint32_t> spring =
-          lottery_.empty() ? std::nullopt : std::optional(lottery_.draw(chance_).spring);
-      const Vec3 position = spring ? position_on_spring(*spring, place) : position_in_bounds(place);
-      if (!is_free(position)) continue;
-      positions_.push_back(position);
-      if (spring) causes_.push_back(stress_[*spring]);
+      Place found{{}, slot};
+      std::optional<StressLottery::Drawn> drawn;
+      if (!lottery_.empty()) {
+        drawn = lottery_.draw(chance_);
+        if (chance_.inherited()) found.key = mixed(chance_.key_of(drawn->spring), drawn->times);
+        place = &chance_.stream({"along", found.key});
+      }
+      found.position = drawn ? position_on_spring(drawn->spring, *place) : position_in_bounds(*place);
+      if (!is_free(found.position)) continue;
+      places_.push_back(found);
+      if (drawn) causes_.push_back(stress_[drawn->spring]);
       return true;
     }
     return false;
@@ -70,10 +75,11 @@ class Arrivals {
     auto partners = masses_where([&](std::uint32_t i) { return stays_[i]; });
     const auto models = masses_where([&](std::uint32_t i) { return stays_[i] && !is_of_air(i); });
     if (models.empty()) return false;
-    for (std::uint64_t number = 0; number < positions_.size(); ++number) {
-      const std::uint32_t model = chance_.one_of(models, {"model", number});
-      edits.new_masses.push_back({positions_[number], context_.mass, context_.body.masses[model].material});
-      join(partners, number, edits);
+    for (const Place& place : places_) {
+      const std::uint32_t model = chance_.one_of(models, {"model", place.key});
+      edits.new_masses.push_back({place.position, context_.mass, context_.body.masses[model].material});
+      if (chance_.inherited()) edits.new_masses.back().identity = mixed(context_.draws.origin(), place.key);
+      join(partners, place.key, edits);
     }
     edits.causes.new_masses = causes_;
     return true;
@@ -81,6 +87,13 @@ class Arrivals {
 
  private:
   static constexpr int attempts_per_position = 100;
+
+  /// Where a new mass comes, and what relatives recognise it by: the number of the search that found it or, on a
+  /// spring, what stands for the spring and for how often it had been drawn before.
+  struct Place {
+    Vec3 position;
+    std::uint64_t key;
+  };
 
   Vec3 position_in_bounds(Rng& rng) const {
     const auto& [low, high] = context_.bounds;
@@ -100,15 +113,16 @@ class Arrivals {
   /// Returns whether a position is far enough from all masses that stay and from all new masses.
   bool is_free(const Vec3& position) const {
     const auto is_near = [&](const Vec3& other) { return !(norm(position - other) >= rule_.min_distance); };
-    if (std::any_of(positions_.begin(), positions_.end(), is_near)) return false;
+    if (std::any_of(places_.begin(), places_.end(), [&](const Place& place) { return is_near(place.position); }))
+      return false;
     for (std::uint32_t i = 0; i < stays_.size(); ++i)
       if (stays_[i] && is_near(context_.position(i))) return false;
     return true;
   }
 
-  /// Adds springs from the newest mass, which has this number among the new ones, to several of `partners`; changes the
-  /// order of `partners`.
-  void join(std::vector<std::uint32_t>& partners, std::uint64_t number, Edits& edits) {
+  /// Adds springs from the newest mass, whose place has this key, to several of `partners`; changes the order of
+  /// `partners`.
+  void join(std::vector<std::uint32_t>& partners, std::uint64_t key, Edits& edits) {
     const Body& body = context_.body;
     const auto newest = static_cast<std::uint32_t>(body.masses.size() + edits.new_masses.size() - 1);
     const std::int32_t own = edits.new_masses.back().material;
@@ -117,12 +131,12 @@ class Arrivals {
     if (!random)
       sort_nearest_first(partners, static_cast<std::size_t>(rule_.springs), edits.new_masses.back().position, context_);
     else if (inherited)
-      sort_by_number(partners, {"partner", number});
+      sort_by_number(partners, {"partner", key});
     for (std::uint32_t i = 0; i < std::min<std::int64_t>(count, rule_.springs); ++i) {
       if (random && !inherited) std::swap(partners[i], partners[i + chance_.rng().below(count - i)]);
       const auto mixed = material_between(body, own, body.masses[partners[i]].material);
       edits.new_springs.push_back(mixed ? NewSpring{partners[i], newest, *mixed, {}}
-                                        : like_a_random_spring(partners[i], newest, number));
+                                        : like_a_random_spring(partners[i], newest, key));
     }
   }
 
@@ -136,12 +150,12 @@ class Arrivals {
   }
 
   /// Returns a new spring with the stiffness, amplitude, frequency and phase of a random one, now and later.
-  NewSpring like_a_random_spring(std::uint32_t a, std::uint32_t b, std::uint64_t number) {
+  NewSpring like_a_random_spring(std::uint32_t a, std::uint32_t b, std::uint64_t key) {
     const auto& springs = context_.body.springs;
     std::uint32_t index = 0;
     if (chance_.inherited()) {
       if (!ring_) ring_ = chance_.ring_of_springs();
-      index = ring_->at(context_.draw(a, {"like", number}));
+      index = ring_->at(context_.draw(a, {"like", key}));
     } else {
       index = chance_.rng().below(static_cast<std::uint32_t>(springs.size()));
     }
@@ -170,8 +184,8 @@ class Arrivals {
   StressLottery lottery_;
   std::optional<Ring> ring_;  ///< of the springs, once one is drawn
   std::vector<bool> stays_;
-  std::vector<Vec3> positions_;
-  std::vector<double> causes_;  ///< for each position, the stress of the spring that it is on; empty if `stress_` is
+  std::vector<Place> places_;
+  std::vector<double> causes_;  ///< for each place, the stress of the spring that it is on; empty if `stress_` is
 };
 
 }  // namespace evodevo

@@ -52,13 +52,19 @@ class Chance {
     return inherited() ? own_.emplace(context_.draws.stream(tag, identities)) : rng_;
   }
 
-  /// Returns a number from [0, 1) for a spring, a function of the identities of its masses and of how many springs of
-  /// lower index join the same two.
-  double number_of(std::uint32_t spring, const Tag& tag) {
-    const Spring& s = context_.body.springs[spring];
-    const auto [low, high] = std::minmax({context_.identity(s.a), context_.identity(s.b)});
-    return context_.draws.number(tag, {low, high, ordinal(spring)});
+  /// Returns what stands for a pair of masses, in either order, and for a spring: its pair, and how many springs of
+  /// lower index join the same pair.
+  std::uint64_t key_of(std::uint32_t a, std::uint32_t b) const {
+    const auto [low, high] = std::minmax({context_.identity(a), context_.identity(b)});
+    return mixed(low, high);
   }
+  std::uint64_t key_of(std::uint32_t spring) {
+    const Spring& s = context_.body.springs[spring];
+    return mixed(key_of(s.a, s.b), ordinal(spring));
+  }
+
+  /// Returns a number from [0, 1) for a spring, a function of its key.
+  double number_of(std::uint32_t spring, const Tag& tag) { return context_.draws.number(tag, {key_of(spring)}); }
 
   /// Returns a number that orders springs whose keys are equal. To be called once for each.
   double tie(std::uint32_t spring) { return inherited() ? number_of(spring, "tie") : rng_(); }
