@@ -56,6 +56,12 @@ class RankSumTest(unittest.TestCase):
         self.assertAlmostEqual(inference.rank_sum_test(a, b), 2 / math.comb(10, 5), places=14)
         self.assertEqual(inference.superiority(a, b), 0)
 
+    def test_one_value_among_ties_is_ranked_exactly(self):
+        # each of six values could be the lone one; two, of the ranks 1 and 6, lie as far from the middle as 9
+        for pair in (([9], [1, 2, 2, 3, 3]), ([1, 2, 2, 3, 3], [9])):
+            self.assertAlmostEqual(inference.rank_sum_test(*pair), 2 / 6, places=14)
+        self.assertEqual(inference.rank_sum_test([2], [2, 2, 3]), 1)
+
 
 class Holm(unittest.TestCase):
     def test_by_hand(self):

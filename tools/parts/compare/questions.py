@@ -40,8 +40,7 @@ class Test:
 
     @property
     def p(self):
-        # one run of an arm, as where only one champion held, shows nothing; the test needs two of each
-        return inference.rank_sum_test(self.a, self.b) if min(len(self.a), len(self.b)) > 1 else 1.0
+        return inference.rank_sum_test(self.a, self.b) if self.a and self.b else 1.0
 
     @property
     def a12(self):
