@@ -14,11 +14,12 @@ namespace rng_stream {
 inline constexpr std::uint32_t newborn = 1;
 inline constexpr std::uint32_t parents = 2;
 inline constexpr std::uint32_t survivors = 3;
-inline constexpr std::uint32_t variation = 4;          ///< choice of the operators that vary a child
-inline constexpr std::uint32_t scenario = 5;           ///< noise and damage of a scenario
-inline constexpr std::uint32_t island = 6;             ///< seeds of islands
-inline constexpr std::uint32_t emigrants = 7;          ///< choice of those who leave an island at random
-inline constexpr std::uint32_t replaced = 8;           ///< choice of those whose place immigrants take
+inline constexpr std::uint32_t variation = 4;  ///< choice of the operators that vary a child
+inline constexpr std::uint32_t scenario = 5;   ///< noise and damage of a scenario
+inline constexpr std::uint32_t island = 6;     ///< seeds of islands
+inline constexpr std::uint32_t emigrants = 7;  ///< choice of those who leave an island at random
+inline constexpr std::uint32_t replaced = 8;   ///< choice of those whose place immigrants take
+inline constexpr std::uint32_t birth_noise = 9;
 inline constexpr std::uint32_t perturbation = 0x10;    ///< first of the streams of perturbations
 inline constexpr std::uint32_t crossover = 0x100;      ///< stream of the first crossover operator
 inline constexpr std::uint32_t mutation = 0x200;       ///< stream of the first mutation operator

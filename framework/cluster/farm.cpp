@@ -11,9 +11,13 @@
 namespace evodevo {
 namespace {
 
+message::JobItem item_of(const Newborn& newborn, double fitness) {
+  return {newborn.id, newborn.generation, newborn.life, newborn.lives, fitness, *newborn.genome};
+}
+
 std::vector<message::JobItem> items_of(std::span<const Newborn> newborns) {
   std::vector<message::JobItem> items;
-  for (const Newborn& newborn : newborns) items.push_back({newborn.id, newborn.generation, 0, *newborn.genome});
+  for (const Newborn& newborn : newborns) items.push_back(item_of(newborn, 0));
   return items;
 }
 
@@ -33,8 +37,8 @@ std::string name_of(const OperatorUse& use) { return use.kind + " operator \"" +
 std::size_t job_size(std::size_t left, std::size_t jobs, std::size_t share, const message::Hello& rank) {
   const std::size_t small_jobs = (rank.jobs + 3) / 4;
   const std::size_t of_share = std::max(share / small_jobs, std::min(share, smallest_cohort));
-  const std::size_t least = std::clamp<std::size_t>(of_share, 1, rank.lives);
-  return std::min(left, std::clamp(left / (2 * jobs), least, 4 * rank.lives));
+  const std::size_t least = std::clamp<std::size_t>(of_share, 1, rank.robots);
+  return std::min(left, std::clamp(left / (2 * jobs), least, 4 * rank.robots));
 }
 
 void end_run(Channel& channel) { tell_all(channel, message::packed(message::End{channel.given_up()})); }
@@ -46,6 +50,10 @@ Farm::Farm(const Experiment& experiment, Simulator& simulator, Channel& channel,
       worker_(experiment, simulator),
       provenances_{worker_.hello().provenance},
       ranks_(static_cast<std::size_t>(channel.size())) {
+  if (options_.mixed && experiment.remeasure > 0)
+    throw InputError("--mixed: selection.remeasure = " + std::to_string(experiment.remeasure) +
+                     " lets robots live again, perhaps on a rank that simulates otherwise than that of their first "
+                     "lives; leave out --mixed or remeasure");
   ranks_.front().hello = worker_.hello();
   ranks_.front().ready = true;
   tell_all(channel_, message::packed(setup));
@@ -135,10 +143,14 @@ std::vector<Evaluated> Farm::evaluate(std::span<const Newborn> newborns, const P
   return evaluated;
 }
 
-std::vector<LifeRecord> Farm::records(std::span<const Newborn> newborns, std::span<const std::uint32_t> provenances) {
+std::vector<std::vector<LifeRecord>> Farm::records(std::span<const Newborn> newborns,
+                                                   std::span<const std::uint32_t> provenances) {
   Batch batch = work({message::Work::records, items_of(newborns), {provenances.begin(), provenances.end()}}, silent);
-  std::vector<LifeRecord> records;
-  for (message::Outcome& outcome : batch.outcomes) records.emplace_back(std::move(outcome.record));
+  std::vector<std::vector<LifeRecord>> records;
+  for (message::Outcome& outcome : batch.outcomes) {
+    std::vector<LifeRecord>& lives = records.emplace_back();
+    for (std::string& record : outcome.records) lives.emplace_back(std::move(record));
+  }
   return records;
 }
 
@@ -151,8 +163,7 @@ void Farm::forget_records() {
 std::vector<Verification> Farm::verify(std::span<const Champion> champions,
                                        std::span<const std::uint32_t> provenances) {
   std::vector<message::JobItem> items;
-  for (const Champion& champion : champions)
-    items.push_back({champion.newborn.id, champion.newborn.generation, champion.fitness, *champion.newborn.genome});
+  for (const Champion& champion : champions) items.push_back(item_of(champion.newborn, champion.fitness));
   Batch batch = work({message::Work::verify, std::move(items), {provenances.begin(), provenances.end()}}, silent);
   std::vector<Verification> verifications;
   for (message::Outcome& outcome : batch.outcomes) verifications.push_back(std::move(outcome.verification));
@@ -180,7 +191,7 @@ Farm::Batch Farm::work(Batch batch, const Progress& progress) {
     news |= beat();
     give_up_silent(batch);
     check_served(batch);
-    if (news) progress(lives_done(batch) / static_cast<double>(batch.items.size()));
+    if (news) progress(robots_done(batch) / static_cast<double>(batch.items.size()));
   }
   return batch;
 }
@@ -300,7 +311,7 @@ void Farm::take(int rank, message::Answer answer, Batch& batch) {
   batch.done += items.size();
   from.beat.busy = answer.busy;
   --from.jobs;
-  if (batch.work == message::Work::evaluate) from.lives += items.size();
+  if (batch.work == message::Work::evaluate) from.robots += items.size();
 }
 
 /// Tells the others every second that this rank is alive. Returns whether it was time.
@@ -334,11 +345,11 @@ void Farm::give_up_silent(Batch& batch) {
   }
 }
 
-double Farm::lives_done(const Batch& batch) const {
+double Farm::robots_done(const Batch& batch) const {
   auto done = static_cast<double>(batch.done);
   for (const Rank& rank : ranks_)
     if (!rank.lost && rank.jobs > 0) done += rank.beat.done;
-  // a beat may count lives whose answers have come since
+  // a beat may count robots whose answers have come since
   return std::min(done, static_cast<double>(batch.items.size()));
 }
 
@@ -346,7 +357,7 @@ std::vector<Share> Farm::shares() const {
   std::vector<Share> shares;
   for (std::size_t i = 0; i < ranks_.size(); ++i) {
     const Rank& rank = ranks_[i];
-    shares.push_back({static_cast<int>(i), rank.hello.host, rank.lives, rank.beat.busy, rank.lost});
+    shares.push_back({static_cast<int>(i), rank.hello.host, rank.robots, rank.beat.busy, rank.lost});
   }
   return shares;
 }

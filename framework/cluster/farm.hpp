@@ -16,9 +16,9 @@ namespace evodevo {
 struct Share {
   int rank = 0;
   std::string host;
-  std::uint64_t lives = 0;  ///< evaluated
-  double busy = 0;          ///< time during which it had work, s
-  bool lost = false;        ///< whether it has fallen silent
+  std::uint64_t robots = 0;  ///< evaluated
+  double busy = 0;           ///< time during which it had work, s
+  bool lost = false;         ///< whether it has fallen silent
 };
 
 /// Returns the number of items in the next job for a rank: less towards the end, so that all ranks end at about the
@@ -48,8 +48,8 @@ class Farm final : public Evaluator {
        const FarmOptions& options = {});
   std::vector<Provenance> provenances() const override { return provenances_; }
   std::vector<Evaluated> evaluate(std::span<const Newborn> newborns, const Progress& progress) override;
-  std::vector<LifeRecord> records(std::span<const Newborn> newborns,
-                                  std::span<const std::uint32_t> provenances) override;
+  std::vector<std::vector<LifeRecord>> records(std::span<const Newborn> newborns,
+                                               std::span<const std::uint32_t> provenances) override;
   void forget_records() override;
   std::vector<Verification> verify(std::span<const Champion> champions,
                                    std::span<const std::uint32_t> provenances) override;
@@ -71,7 +71,7 @@ class Farm final : public Evaluator {
     message::Beat beat;
     Clock::time_point heard;  ///< time of its last message
     std::size_t jobs = 0;     ///< that it has and has not answered
-    std::uint64_t lives = 0;
+    std::uint64_t robots = 0;
     bool ready = false, lost = false;
   };
 
@@ -115,7 +115,7 @@ class Farm final : public Evaluator {
   void take(int rank, message::Answer answer, Batch& batch);
   bool beat();
   void give_up_silent(Batch& batch);
-  double lives_done(const Batch& batch) const;
+  double robots_done(const Batch& batch) const;
   [[noreturn]] void fail(int rank, const message::Failure& failure) const;
 
   Channel& channel_;

@@ -5,7 +5,7 @@
 
 namespace evodevo {
 
-constexpr Status last_of(Status) { return Status::passive; }
+constexpr Status last_of(Status) { return Status::lucky; }
 
 template <class Wire>
 void for_each_part(Wire& wire, Block& block) {
@@ -19,13 +19,13 @@ void for_each_part(Wire& wire, Genome& genome) {
 
 template <class Wire>
 void for_each_part(Wire& wire, TestScore& score) {
-  wire(score.scenario, score.repeat, score.objective, score.value);
+  wire(score.life, score.scenario, score.repeat, score.objective, score.value);
 }
 
 template <class Wire>
 void for_each_part(Wire& wire, Result& result) {
   wire(result.status, result.reason, result.ended_at, result.objectives, result.spring_evaluations, result.measures,
-       result.tests);
+       result.tests, result.lives);
 }
 
 template <class Wire>
@@ -82,7 +82,7 @@ void for_each_part(Wire& wire, Migrant& migrant) {
 
 template <class Wire>
 void for_each_part(Wire& wire, Summary& s) {
-  wire(s.generation, s.evaluations, s.best, s.median, s.diverged, s.invalid, s.artefact, s.passive, s.clones,
+  wire(s.generation, s.evaluations, s.best, s.median, s.diverged, s.invalid, s.artefact, s.lucky, s.passive, s.clones,
        s.spring_evaluations, s.wall_time);
 }
 
@@ -98,12 +98,12 @@ void for_each_part(Wire& wire, Setup& setup) {
 
 template <class Wire>
 void for_each_part(Wire& wire, Hello& hello) {
-  wire(hello.host, hello.provenance, hello.layout, hello.scores, hello.jobs, hello.lives, hello.verified_at_once);
+  wire(hello.host, hello.provenance, hello.layout, hello.scores, hello.jobs, hello.robots, hello.verified_at_once);
 }
 
 template <class Wire>
 void for_each_part(Wire& wire, JobItem& item) {
-  wire(item.id, item.generation, item.fitness, item.genome);
+  wire(item.id, item.generation, item.life, item.lives, item.fitness, item.genome);
 }
 
 template <class Wire>
@@ -113,7 +113,7 @@ void for_each_part(Wire& wire, Job& job) {
 
 template <class Wire>
 void for_each_part(Wire& wire, Outcome& outcome) {
-  wire(outcome.result, outcome.record, outcome.verification);
+  wire(outcome.result, outcome.records, outcome.verification);
 }
 
 template <class Wire>
@@ -176,7 +176,7 @@ std::string packed(Kind kind) {
 
 Kind kind_of(const std::string& bytes) { return WireReader(bytes).next<Kind>(); }
 
-std::string protocol() { return std::string("2.") + archive_format; }
+std::string protocol() { return std::string("3.") + archive_format; }
 
 std::string protocol_of(const std::string& first) {
   WireReader reader(first);

@@ -62,7 +62,7 @@ struct Hello {
   Layout layout;                       ///< of the genomes that its operators read
   std::vector<std::string> scores;     ///< what its operators score
   std::uint64_t jobs = 1;              ///< number of jobs that it does at the same time
-  std::uint64_t lives = 1;             ///< number of lives in a job that keeps its part of the device busy
+  std::uint64_t robots = 1;            ///< number of robots in a job that keeps its part of the device busy
   std::uint64_t verified_at_once = 1;  ///< Evaluator::verified_at_once()
 
   static constexpr auto kind = Kind::hello;
@@ -73,7 +73,8 @@ enum class Work : std::uint8_t { evaluate, records, verify };
 /// An individual to evaluate or verify, or whose record is wanted.
 struct JobItem {
   std::uint32_t id = 0, generation = 0;
-  double fitness = 0;  ///< Champion::fitness
+  std::uint32_t life = 1, lives = 1;  ///< Newborn::life and lives
+  double fitness = 0;                 ///< Champion::fitness
   Genome genome;
 };
 
@@ -87,8 +88,8 @@ struct Job {
 
 /// The outcome of one item, of which only the part that the job asks for is there.
 struct Outcome {
-  Result result = {};  ///< without its record
-  std::string record = {};
+  Result result = {};  ///< without its records
+  std::vector<std::string> records = {};
   Verification verification = {};
 };
 
@@ -102,7 +103,7 @@ struct Answer {
 
 /// Sent every second, so that rank 0 knows that the rank is alive.
 struct Beat {
-  double done = 0;  ///< how many lives of unfinished jobs have been simulated; parts of lives count
+  double done = 0;  ///< how many robots of unfinished jobs have been evaluated; parts of evaluations count
   double busy = 0;  ///< time during which the rank had at least one job, s
 
   static constexpr auto kind = Kind::beat;

@@ -33,7 +33,8 @@ message::Hello hello_of(const Experiment& experiment, Simulator& simulator) {
   const std::optional<DeviceUse> gpus = simulator.device_use();
   // a second job of a processor fills the time in which few lives of the first are left
   hello.jobs = gpus ? static_cast<std::uint64_t>(simulator.concurrency()) : 2;
-  hello.lives = gpus ? large_cohort : lives_at_once(simulator);
+  const std::size_t lives = gpus ? large_cohort : lives_at_once(simulator);
+  hello.robots = std::max<std::size_t>(1, lives / static_cast<std::size_t>(experiment.lives));
   return hello;
 }
 
@@ -67,13 +68,18 @@ void Worker::work(const message::Job& job) {
 
 std::vector<message::Outcome> Worker::outcomes(const message::Job& job) {
   std::vector<Newborn> newborns;
-  for (const message::JobItem& item : job.items) newborns.push_back({item.id, item.generation, &item.genome});
+  for (const message::JobItem& item : job.items)
+    newborns.push_back(
+        {.id = item.id, .generation = item.generation, .genome = &item.genome, .life = item.life, .lives = item.lives});
   std::vector<message::Outcome> outcomes;
   if (job.work == message::Work::evaluate) {
     for (Evaluated& one : evaluated(newborns, job.number)) outcomes.push_back({.result = std::move(one.result)});
   } else if (job.work == message::Work::records) {
     const std::vector<std::uint32_t> own(newborns.size());
-    for (const LifeRecord& record : evaluator_.records(newborns, own)) outcomes.push_back({.record = record.bytes()});
+    for (const std::vector<LifeRecord>& lives : evaluator_.records(newborns, own)) {
+      message::Outcome& outcome = outcomes.emplace_back();
+      for (const LifeRecord& record : lives) outcome.records.push_back(record.bytes());
+    }
   } else {
     std::vector<Champion> champions;
     for (std::size_t i = 0; i < newborns.size(); ++i) champions.push_back({newborns[i], job.items[i].fitness});
@@ -113,7 +119,7 @@ void Worker::wait(std::chrono::microseconds time) {
 message::Beat Worker::beat() const {
   message::Beat beat{0, busy_.seconds()};
   const std::lock_guard lock(mutex_);
-  for (const auto& [job, lives] : progress_) beat.done += lives;
+  for (const auto& [job, robots] : progress_) beat.done += robots;
   return beat;
 }
 

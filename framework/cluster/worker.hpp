@@ -29,7 +29,7 @@ class Worker {
   /// Waits for unfinished jobs.
   ~Worker();
 
-  /// What this rank is. `hello.jobs` jobs of `hello.lives` lives keep its device busy.
+  /// What this rank is. `hello.jobs` jobs of `hello.robots` robots keep its device busy.
   const message::Hello& hello() const { return hello_; }
 
   void start(message::Job job);
@@ -58,7 +58,7 @@ class Worker {
   mutable BusyClock busy_;
   mutable std::mutex mutex_;
   std::condition_variable job_ended_;
-  std::map<std::uint64_t, double> progress_;  ///< of unfinished evaluations, by job: number of lives
+  std::map<std::uint64_t, double> progress_;  ///< of unfinished evaluations, by job: number of robots
   std::vector<Done> done_;
   std::map<std::uint64_t, std::jthread> threads_;  ///< by job
 };

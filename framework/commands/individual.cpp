@@ -24,7 +24,7 @@ struct Shown {
 };
 
 Shown newborn(const Evaluation& evaluation, const Individual& individual) {
-  const Newborn newborn{individual.id, individual.born, &individual.genome};
+  const Newborn newborn{.id = individual.id, .generation = individual.born, .genome = &individual.genome};
   BuiltBody built = std::move(evaluation.birth.build({&newborn, 1}).front());
   if (!built.failure.empty()) return {{}, "invalid, " + built.failure};
   return {{std::move(built.body), std::nullopt, std::move(built.identities)}, ""};
@@ -47,13 +47,19 @@ int body(const Given& given) {
   const auto simulator = opened_simulator(experiment);
   const Evaluation evaluation(experiment, *simulator);
   const Scenario* scenario = given_developing_scenario(experiment, given);
-  if (scenario != nullptr && !given.contains("matured"))
-    throw UsageError(option_text("scenario", scenario->name) +
-                     ": robots are born with the same body in every scene; add --matured");
-  const Shown shown =
-      given.contains("matured")
-          ? matured(evaluation, for_resimulation(archive, experiment, individual, simulator->device()), scenario)
-          : newborn(evaluation, individual);
+  const auto require_matured = [&](const char* option, const std::string& value) {
+    if (given.contains(option) && !given.contains("matured"))
+      throw UsageError(option_text(option, value) +
+                       ": robots are born with the same body in every scene and life; add --matured");
+  };
+  require_matured("scenario", scenario != nullptr ? scenario->name : "");
+  require_matured("life", std::to_string(given_life_number(given).value_or(1)));
+  const Shown shown = given.contains("matured")
+                          ? matured(evaluation,
+                                    given_life(for_resimulation(archive, experiment, individual, simulator->device()),
+                                               experiment, given),
+                                    scenario)
+                          : newborn(evaluation, individual);
   if (!shown.failure.empty()) {
     std::cerr << "individual " << individual.id << " has no body to show: " << shown.failure << '\n';
     return 1;
@@ -112,6 +118,7 @@ Command body_command() {
   Options options;
   add_individual_option(options);
   options.add_options()("matured", "print the body after development, with its positions and velocities at that time");
+  add_life_option(options, "with --matured: the body that has matured in this life");
   add_scenario_option(options, "with --matured: the body that has matured in this scenario");
   add_plugin_option(options);
   return {.name = "body",

@@ -167,12 +167,14 @@ class LifeReport {
         operators_(narrated_operators(experiment_)) {
     const auto simulator = opened_simulator(experiment_);
     const Evaluation evaluation(experiment_, *simulator);
-    const Newborn newborn = for_resimulation(archive, experiment_, individual_, simulator->device());
+    const Newborn newborn =
+        given_life(for_resimulation(archive, experiment_, individual_, simulator->device()), experiment_, given);
+    life_ = newborn.life;
     std::vector<Life> lives = evaluation.birth.of({&newborn, 1}, scenario_);
     const LivingBody newborn_body = lives.front().living;
     born_ = newborn_body.body;
     timed("simulating the development again", [&] { evaluation.development.run(lives, [](double) {}); });
-    LifeEvents told = life_events(newborn_body, lives.front().result.record);
+    LifeEvents told = life_events(newborn_body, lives.front().record);
     matured_ = std::move(told.matured);
     events_ = std::move(told.events);
   }
@@ -186,6 +188,7 @@ class LifeReport {
     fmt::print(std::cout, "individual {}: born with {} masses and {} springs, matured with {} and {}; {}{}\n",
                individual_.id, born_.masses.size(), born_.springs.size(), matured_.masses.size(),
                matured_.springs.size(), name(result.status), result.reason.empty() ? "" : ": " + result.reason);
+    if (individual_.result.lives.size() > 1) std::cout << "in life " << life_ << '\n';
     if (scenario_ != nullptr) std::cout << "in the scenario \"" << scenario_->name << "\"\n";
     switch (experiment_.development.control) {
       case Control::random_places:
@@ -206,6 +209,7 @@ class LifeReport {
     for (const Narrated& op : operators_) operators.push_back({{"name", op.name}});
     for (const Event& event : events_) edits.push_back(to_json(event, operators_));
     return {{"individual", individual_.id},
+            {"life", life_},
             {"scenario", scenario_ != nullptr ? Json(scenario_->name) : Json(nullptr)},
             {"control", name_of(experiment_.development.control)},
             {"status", name(individual_.result.status)},
@@ -223,6 +227,7 @@ class LifeReport {
   Experiment experiment_;
   const Scenario* scenario_;         ///< of `experiment_`, in which the life took place; null: its own scene
   std::vector<Narrated> operators_;  ///< devo operators of `experiment_`, to which they refer
+  std::uint32_t life_ = 1;
   Body born_, matured_;
   std::vector<Event> events_;
 };
@@ -242,6 +247,7 @@ int life(const Given& given) {
 Command life_command() {
   Options options;
   add_individual_option(options);
+  add_life_option(options, "tell this life");
   options.add_options()("all", "print every edit instead of a summary of each cycle");
   options.add_options()("json", "print every edit as JSON");
   add_scenario_option(options, "tell the life in this scenario, in which robots develop");

@@ -175,9 +175,10 @@ int film(const Given& given) {
   const std::string page = page_template();
   const Archive archive = Archive::read(folder);
   const ArchivedIndividual shown = chosen_individual(archive, given);
-  const Cast cast = given.contains("individual") ? Cast{.best = 0, .best_of_others = 0, .individuals = {shown.id}}
-                                                 : Cast{.best = 1, .best_of_others = 0, .ancestors = 0};
+  Cast cast = given.contains("individual") ? Cast{.best = 0, .best_of_others = 0, .individuals = {shown.id}}
+                                           : Cast{.best = 1, .best_of_others = 0, .ancestors = 0};
   const Experiment experiment = experiment_of_run(archive, given);
+  cast.life = given_life(newborn_of(shown), experiment, given).life;
   refuse_to_overwrite("--out", file, libraries_of(experiment));
   OutputFile output(file, file);
   const Json data = report_data({filmed_run(archive, experiment, given, cast, page_budget)});
@@ -245,6 +246,7 @@ Command report_command() {
 Command film_command() {
   Options options;
   add_individual_option(options);
+  add_life_option(options, "show this life; default: the first");
   options.add_options()("out", value<std::string>("FILE")->default_value("film.mp4"),
                         "the file to write; its name ends in .mp4, .gif, .webp or .png")(
       "from", value<double>("S"), "time at which a film begins, in s since birth; default: at birth")(

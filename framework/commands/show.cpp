@@ -71,7 +71,8 @@ class Report {
     std::cout << done() << " evaluations: " << statuses.at("ok") << " ok, " << statuses.at("invalid") << " invalid, "
               << statuses.at("diverged") << " diverged";
     if (has_refusals())
-      std::cout << ", " << statuses.at("artefact") << " artefact, " << statuses.at("passive") << " passive";
+      std::cout << ", " << statuses.at("artefact") << " artefact, " << statuses.at("lucky") << " lucky, "
+                << statuses.at("passive") << " passive";
     std::cout << "; " << clones(generations_) << " of them clones\n\n";
     print_generations();
     print_diversity();
@@ -92,6 +93,7 @@ class Report {
     if (const auto verification = archive_.verification(id))
       std::cout << ", " << verdict_text(*verification, objectives_.front().maximise);
     std::cout << '\n';
+    print_lives(individual.result.lives);
     print_measures(id);
     const std::vector<ArchivedTest> tests = archive_.tests(id);
     for (const Objective& objective : objectives_) print_tests(tests, objective);
@@ -111,7 +113,7 @@ class Report {
   }
 
   bool has_refusals() const {
-    return std::ranges::any_of(generations_, [](const Summary& s) { return s.artefact + s.passive > 0; });
+    return std::ranges::any_of(generations_, [](const Summary& s) { return s.refused() > 0; });
   }
 
   std::int64_t done() const { return generations_.empty() ? 0 : generations_.back().evaluations; }
@@ -143,7 +145,7 @@ class Report {
     for (const Column& column : columns_) fmt::print(std::cout, " {:>{}} {:>10}", "best", column.width, "median");
     if (!map_.axes.empty()) fmt::print(std::cout, " {:>8} {:>10}", "coverage", "QD score");
     fmt::print(std::cout, " {:>9} {:>8}", "diverged", "invalid");
-    if (has_refusals()) fmt::print(std::cout, " {:>8} {:>8}", "artefact", "passive");
+    if (has_refusals()) fmt::print(std::cout, " {:>8} {:>6} {:>8}", "artefact", "lucky", "passive");
     fmt::print(std::cout, " {:>7}\n", "clones");
     const std::size_t stride = (generations_.size() + generations_shown - 1) / generations_shown;
     for (std::size_t i = 0; i < generations_.size(); ++i)
@@ -168,7 +170,7 @@ class Report {
       fmt::print(std::cout, " {:>8} {:>10}", percent(map_.coverage(state)), number(map_.qd_score(state)));
     }
     fmt::print(std::cout, " {:>9} {:>8}", s.diverged, s.invalid);
-    if (has_refusals()) fmt::print(std::cout, " {:>8} {:>8}", s.artefact, s.passive);
+    if (has_refusals()) fmt::print(std::cout, " {:>8} {:>6} {:>8}", s.artefact, s.lucky, s.passive);
     fmt::print(std::cout, " {:>7}\n", s.clones);
   }
 
@@ -228,7 +230,17 @@ class Report {
     if (!texts.empty()) std::cout << "    " << joined(texts, ", ") << '\n';
   }
 
-  /// Prints the mean of an objective over the repeats of each scenario.
+  /// Prints each objective in each life, if there were several.
+  void print_lives(const std::vector<std::vector<double>>& lives) const {
+    if (lives.size() < 2) return;
+    for (std::size_t i = 0; i < objectives_.size(); ++i) {
+      std::vector<std::string> values;
+      for (const std::vector<double>& life : lives) values.push_back(short_number(life[i]));
+      std::cout << "    " << objectives_[i].name << " by life: " << joined(values, ", ") << '\n';
+    }
+  }
+
+  /// Prints the mean of an objective over the lives and repeats of each scenario.
   static void print_tests(const std::vector<ArchivedTest>& tests, const Objective& objective) {
     std::vector<std::string> scenarios;
     std::map<std::string, std::vector<double>> values;

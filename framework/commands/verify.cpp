@@ -31,16 +31,18 @@ int verify(const Given& given) {
                        "measures after maturing first");
   const auto simulator = opened_simulator(experiment);
   warn_of_other_builds(experiment, *simulator, archive);
-  const auto verifications = verify_best(experiment, *simulator, archive, static_cast<std::size_t>(best));
+  const std::optional<std::int64_t> life = given_life_number(given);
+  const auto count = static_cast<std::size_t>(best);
+  const auto verifications = life ? verify_life_of_best(experiment, *simulator, archive, count, *life)
+                                  : verify_best(experiment, *simulator, archive, count);
   const Objective& objective = experiment.objectives.front();
-  Json all = Json::array();
-  for (const Verification& verification : verifications) {
-    if (given.contains("json"))
-      all.push_back(verification_json(verification, objective));
-    else
-      print(verification, objective);
+  if (!given.contains("json")) {
+    print(verifications, objective);
+    return 0;
   }
-  if (given.contains("json")) std::cout << json_text(all) << '\n';
+  Json all = Json::array();
+  for (const Verification& verification : verifications) all.push_back(verification_json(verification, objective));
+  std::cout << json_text(all) << '\n';
   return 0;
 }
 
@@ -50,14 +52,15 @@ Command verify_command() {
   Options options;
   options.add_options()("best", value<std::int64_t>("N")->default_value(3),
                         "how many of the best individuals to verify")("json", "print JSON");
+  add_life_option(options, "verify this life alone, and store nothing");
   add_plugin_option(options);
   return {
       .name = "verify",
       .arguments = {{"DIR"}},
       .summary = "Check whether the best robots of a run keep their fitness",
       .text = {"It simulates each of them again with a smaller time step, with another method, from perturbed "
-               "starts, without muscles, and for longer, and stores the results in the run. The run may still be in "
-               "progress. `help verification` explains the trials."},
+               "starts, without muscles, for longer, and in lives to come, and stores the results in the run. The run "
+               "may still be in progress. `help verification` explains the trials."},
       .examples = {"verify runs/quickstart-1 --best 10"},
       .options = options,
       .function = verify};

@@ -80,7 +80,7 @@ void SampleTable::set_rows(const std::vector<std::uint8_t>& fails, Rng& rng) {
     for (std::size_t i = 0; i < count; ++i) numbers.push_back(rng.uniform(low, high));
     return numbers;
   };
-  constexpr std::array lost{Status::diverged, Status::artefact, Status::passive};
+  constexpr std::array lost{Status::diverged, Status::artefact, Status::passive, Status::lucky};
   const auto half = static_cast<std::uint32_t>(rows_.size() / 2);
   for (std::uint32_t i = 0; i < rows_.size(); ++i) {
     Lists& lists = lists_[i];

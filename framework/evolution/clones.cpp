@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <functional>
-#include <unordered_map>
 
 namespace evodevo {
 
@@ -21,6 +20,23 @@ bool GenomeSet::Equal::operator()(const Genome* a, const Genome* b) const {
 
 GenomeSet::GenomeSet(const std::vector<Individual>& individuals) {
   for (const Individual& individual : individuals) add(individual.genome);
+}
+
+Twins::Twins(const std::vector<Individual>& population, const Experiment& experiment,
+             const RecordedProvenances& provenances)
+    : inherited_(experiment.development.draws == DrawsBy::inherited) {
+  for (const Individual& one : population)
+    if (one.result.status == Status::ok && provenances.own(one.provenance)) find_or_add(one);
+}
+
+bool Twins::Equal::operator()(const Genome* a, const Genome* b) const {
+  return a->genes == b->genes && a->blocks == b->blocks;
+}
+
+const Individual* Twins::find_or_add(const Individual& newborn) {
+  if (!inherited_) return nullptr;
+  const auto [twin, is_new] = known_.try_emplace(&newborn.genome, &newborn);
+  return is_new ? nullptr : twin->second;
 }
 
 std::int64_t count_clones(const std::vector<Individual>& population, const std::vector<Individual>& newborns) {

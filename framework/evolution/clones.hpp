@@ -1,10 +1,12 @@
 // Clones and copies: finds genetically equal individuals, and removes those that also have equal scores.
 #pragma once
 
+#include <unordered_map>
 #include <unordered_set>
 #include <vector>
 
 #include "evolution/population.hpp"
+#include "evolution/provenance.hpp"
 
 namespace evodevo {
 
@@ -28,6 +30,27 @@ class GenomeSet {
 
  private:
   std::unordered_set<const Genome*, Hash, Equal> genomes_;
+};
+
+/// Finds individuals that have lived as a newborn would live: its twins. They have equal genes, and blocks with equal
+/// ids, because identities of masses may follow from these. There are twins only if the draws of development are
+/// inherited: then nothing in a life depends on who lives it. The individuals must not move while this object exists.
+class Twins {
+ public:
+  /// Those of `population` count that have a fitness, which was found by a provenance that the evaluator has.
+  Twins(const std::vector<Individual>& population, const Experiment& experiment,
+        const RecordedProvenances& provenances);
+
+  /// Returns a twin; if there is none, adds the newborn, which will be evaluated, and returns null.
+  const Individual* find_or_add(const Individual& newborn);
+
+ private:
+  struct Equal {
+    bool operator()(const Genome* a, const Genome* b) const;
+  };
+
+  bool inherited_;
+  std::unordered_map<const Genome*, const Individual*, GenomeSet::Hash, Equal> known_;
 };
 
 /// Returns the number of newborns that are genetically equal to a member of `population` or to an earlier newborn.

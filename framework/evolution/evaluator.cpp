@@ -28,28 +28,30 @@ std::vector<Evaluated> LocalEvaluator::without_records(std::span<const Newborn> 
   for (Result& result : results) evaluated.push_back({std::move(result)});
   const std::lock_guard lock(mutex_);
   for (std::size_t i = 0; i < newborns.size(); ++i)
-    kept_[newborns[i].id] = std::exchange(evaluated[i].result.record, LifeRecord());
+    kept_[{newborns[i].id, newborns[i].life}] = std::exchange(evaluated[i].result.records, {});
   return evaluated;
 }
 
-std::vector<LifeRecord> LocalEvaluator::records(std::span<const Newborn> newborns, std::span<const std::uint32_t>) {
-  std::vector<LifeRecord> records(newborns.size());
+std::vector<std::vector<LifeRecord>> LocalEvaluator::records(std::span<const Newborn> newborns,
+                                                             std::span<const std::uint32_t>) {
+  std::vector<std::vector<LifeRecord>> records(newborns.size());
   std::vector<Newborn> lost;
-  std::vector<std::size_t> places;  // of the lost, in `records`
+  std::vector<std::size_t> places;  // of each lost life, in `records`
   {
     const std::lock_guard lock(mutex_);
     for (std::size_t i = 0; i < newborns.size(); ++i) {
-      if (const auto kept = kept_.find(newborns[i].id); kept != kept_.end()) {
+      const auto kept = kept_.find({newborns[i].id, newborns[i].life});
+      if (kept != kept_.end() && kept->second.size() == newborns[i].lives) {
         records[i] = kept->second;
       } else {
         lost.push_back(newborns[i]);
-        places.push_back(i);
+        places.insert(places.end(), newborns[i].lives, i);
       }
     }
   }
-  std::vector<Life> lives = evaluation_.birth.of(lost);
+  std::vector<Life> lives = evaluation_.birth.of(each_life(experiment_, lost));
   evaluation_.development.run(lives, [](double) {});
-  for (std::size_t i = 0; i < lives.size(); ++i) records[places[i]] = std::move(lives[i].result.record);
+  for (std::size_t i = 0; i < lives.size(); ++i) records[places[i]].push_back(std::move(lives[i].record));
   return records;
 }
 

@@ -9,13 +9,13 @@
 
 #include "evolution/provenance.hpp"
 #include "life/evaluation.hpp"
-#include "life/verification.hpp"
+#include "life/verification/verification.hpp"
 
 namespace evodevo {
 
 /// What an evaluator finds of a newborn.
 struct Evaluated {
-  Result result;                 ///< without its record
+  Result result;                 ///< without its records
   std::uint32_t provenance = 0;  ///< index into Evaluator::provenances()
 };
 
@@ -33,10 +33,10 @@ class Evaluator {
   /// lives were simulated, because the records of a whole population would take too much memory. Calls `progress` with
   /// the fraction that is done, 0 to 1.
   virtual std::vector<Evaluated> evaluate(std::span<const Newborn> newborns, const Progress& progress) = 0;
-  /// Returns the records of lives, in the order of the newborns. Lives whose records are not kept are simulated again,
-  /// by processes that have the provenance of the newborn's result.
-  virtual std::vector<LifeRecord> records(std::span<const Newborn> newborns,
-                                          std::span<const std::uint32_t> provenances) = 0;
+  /// Returns the records of all lives of newborns, in their order. Lives whose records are not kept are simulated
+  /// again, by processes that have the provenance of the newborn's result.
+  virtual std::vector<std::vector<LifeRecord>> records(std::span<const Newborn> newborns,
+                                                       std::span<const std::uint32_t> provenances) = 0;
   /// Forgets all records that are kept.
   virtual void forget_records() = 0;
 
@@ -70,8 +70,8 @@ class LocalEvaluator final : public Evaluator {
   std::vector<Evaluated> evaluate(std::span<const Newborn> newborns, const Progress& progress) override;
   /// The same as one cohort, for callers that evaluate several cohorts at the same time.
   std::vector<Evaluated> evaluate_cohort(std::span<const Newborn> newborns, const Progress& progress);
-  std::vector<LifeRecord> records(std::span<const Newborn> newborns,
-                                  std::span<const std::uint32_t> provenances) override;
+  std::vector<std::vector<LifeRecord>> records(std::span<const Newborn> newborns,
+                                               std::span<const std::uint32_t> provenances) override;
   void forget_records() override;
   std::vector<Verification> verify(std::span<const Champion> champions,
                                    std::span<const std::uint32_t> provenances) override;
@@ -88,8 +88,8 @@ class LocalEvaluator final : public Evaluator {
   Simulator& simulator_;
   Evaluation evaluation_;
   std::mutex mutex_;
-  std::map<std::uint32_t, LifeRecord> kept_;  ///< by id
-  ExactSimulators exact_;                     ///< made when the first individual is verified
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<LifeRecord>> kept_;  ///< by id and first life
+  ExactSimulators exact_;  ///< made when the first individual is verified
 };
 
 }  // namespace evodevo

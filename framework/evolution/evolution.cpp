@@ -16,19 +16,70 @@
 #include "evolution/front_verification.hpp"
 #include "evolution/islands/migration.hpp"
 #include "evolution/selection_table.hpp"
+#include "life/measurement/combining.hpp"
 
 namespace evodevo {
 namespace {
 
-void evaluate(std::vector<Individual>& newborns, Evaluator& evaluator, const RecordedProvenances& provenances,
-              const Observer& observer) {
+/// Returns the members of a population that live again: those that were measured longest ago. They have a fitness,
+/// which was found by a provenance that the evaluator has.
+std::vector<Individual*> due_again(std::vector<Individual>& population, const Experiment& experiment,
+                                   const RecordedProvenances& provenances) {
+  std::vector<Individual*> due;
+  for (Individual& one : population)
+    if (one.result.status == Status::ok && one.lives + experiment.lives <= most_lives &&
+        provenances.own(one.provenance))
+      due.push_back(&one);
+  std::ranges::stable_sort(due, {}, &Individual::measured);
+  due.resize(std::min(due.size(), static_cast<std::size_t>(experiment.remeasure)));
+  return due;
+}
+
+/// Evaluates newborns, and further lives of elders. The result of a newborn with a twin (Twins), which would be the
+/// same, is copied instead. Returns the spring evaluations of all.
+std::uint64_t evaluate(std::vector<Individual>& newborns, std::span<Individual* const> elders,
+                       const std::vector<Individual>& population, const Experiment& experiment, Evaluator& evaluator,
+                       const RecordedProvenances& provenances, const Observer& observer) {
+  const auto lives = static_cast<std::uint32_t>(experiment.lives);
+  Twins twins(population, experiment, provenances);
   std::vector<Newborn> batch;
-  for (const Individual& individual : newborns) batch.push_back({individual.id, individual.born, &individual.genome});
-  std::vector<Evaluated> evaluated = evaluator.evaluate(batch, observer.generation_progress);
-  for (std::size_t i = 0; i < newborns.size(); ++i) {
-    newborns[i].result = std::move(evaluated[i].result);
-    newborns[i].provenance = provenances.recorded(evaluated[i].provenance);
+  std::vector<Individual*> evaluated;
+  std::vector<std::pair<Individual*, const Individual*>> copies;
+  for (Individual& newborn : newborns) {
+    newborn.lives = lives;
+    newborn.measured = newborn.born;
+    if (const Individual* twin = twins.find_or_add(newborn)) {
+      copies.emplace_back(&newborn, twin);
+    } else {
+      batch.push_back(newborn_of(newborn));
+      evaluated.push_back(&newborn);
+    }
   }
+  for (const Individual* elder : elders) {
+    Newborn& again = batch.emplace_back(newborn_of(*elder));
+    again.life += again.lives;
+    again.lives = lives;
+  }
+  std::vector<Evaluated> found = evaluator.evaluate(batch, observer.generation_progress);
+  std::uint64_t spring_evaluations = 0;
+  for (const Evaluated& one : found) spring_evaluations += one.result.spring_evaluations;
+  for (std::size_t i = 0; i < evaluated.size(); ++i) {
+    evaluated[i]->result = std::move(found[i].result);
+    evaluated[i]->provenance = provenances.recorded(found[i].provenance);
+  }
+  for (const auto& [copy, twin] : copies) {  // before elders live again, so that a twin among them has the same lives
+    copy->result = twin->result;
+    copy->result.spring_evaluations = 0;
+    copy->lives = twin->lives;
+    copy->provenance = twin->provenance;
+  }
+  for (std::size_t i = 0; i < elders.size(); ++i) {
+    Individual& elder = *elders[i];
+    add_lives(experiment, elder.lives, lives, std::move(found[evaluated.size() + i].result), elder.result);
+    elder.lives += lives;
+    elder.measured = newborns.front().born;
+  }
+  return spring_evaluations;
 }
 
 /// Adds the provenances of the evaluator to those of the run.
@@ -95,30 +146,33 @@ class FrontLives {
              const Archive& archive)
       : experiment_(experiment), evaluator_(evaluator), provenances_(provenances) {
     for (const Individual& individual : archive.population())
-      if (archive.life(individual.id)) kept_.insert(individual.id);
+      kept_[individual.id] = static_cast<std::uint32_t>(archive.lives(individual.id).size());
   }
 
-  /// Keeps the records of the individuals on the front. A few older individuals reach the front only now, because
-  /// selection has removed the individuals that dominated them. Their records no longer exist, so they are simulated
-  /// again. Individuals whose provenance the evaluator does not have are not simulated again, because the new life
-  /// might differ from the one that was scored.
+  /// Keeps the records of all lives of the individuals on the front. A few older individuals reach the front only now,
+  /// because selection has removed the individuals that dominated them. Their records no longer exist, so they are
+  /// simulated again. Individuals whose provenance the evaluator does not have are not simulated again, because the new
+  /// life might differ from the one that was scored.
   void keep_front(const std::vector<Individual>& everyone, std::uint32_t generation) {
     std::vector<Newborn> arrivals;
     std::vector<std::uint32_t> provenances;
     for (const Individual* individual : front(everyone, experiment_, generation)) {
-      if (!kept_.insert(individual->id).second) continue;
+      std::uint32_t& kept = kept_[individual->id];
       const std::optional<std::uint32_t> provenance = provenances_.own(individual->provenance);
-      if (!provenance) continue;
-      arrivals.push_back({individual->id, individual->born, &individual->genome});
+      if (kept == individual->lives || !provenance) continue;
+      Newborn& arrival = arrivals.emplace_back(newborn_of(*individual));
+      arrival.life += kept;
+      arrival.lives -= std::exchange(kept, individual->lives);
       provenances.push_back(*provenance);
     }
     if (arrivals.empty()) return;
-    std::vector<LifeRecord> records = evaluator_.records(arrivals, provenances);
-    for (std::size_t i = 0; i < arrivals.size(); ++i) to_commit_[arrivals[i].id] = std::move(records[i]);
+    std::vector<std::vector<LifeRecord>> records = evaluator_.records(arrivals, provenances);
+    for (std::size_t i = 0; i < arrivals.size(); ++i)
+      to_commit_[arrivals[i].id] = {arrivals[i].life, std::move(records[i])};
   }
 
   /// Returns the records that the current generation adds to the archive, and forgets all of its records.
-  std::map<std::uint32_t, LifeRecord> committed() {
+  LivesById committed() {
     evaluator_.forget_records();
     return std::exchange(to_commit_, {});
   }
@@ -127,8 +181,8 @@ class FrontLives {
   const Experiment& experiment_;
   Evaluator& evaluator_;
   const RecordedProvenances& provenances_;
-  std::map<std::uint32_t, LifeRecord> to_commit_;
-  std::set<std::uint32_t> kept_;
+  LivesById to_commit_;
+  std::map<std::uint32_t, std::uint32_t> kept_;  ///< number of lives whose records are kept, by id
 };
 
 /// Removes from `everyone` all individuals except the survivors, which stay in the order of birth. Adds the ids of the
@@ -171,21 +225,23 @@ std::vector<double> first_scores(const std::vector<Individual>& population) {
 }
 
 Summary summarise(const std::vector<Individual>& population, const std::vector<Individual>& newborns,
-                  std::uint32_t generation) {
+                  std::span<Individual* const> elders, std::uint32_t generation) {
   Summary summary;
   summary.generation = generation;
   summary.clones = count_clones(population, newborns);
-  for (const Individual& individual : newborns) {
+  const auto count = [&](const Individual& individual) {
     summary.diverged += individual.result.status == Status::diverged;
     summary.invalid += individual.result.status == Status::invalid;
-    summary.spring_evaluations += individual.result.spring_evaluations;
-  }
+  };
+  for (const Individual& individual : newborns) count(individual);
+  for (const Individual* elder : elders) count(*elder);
   return summary;
 }
 
 void add_refusals(const std::vector<Refusal>& refusals, Summary& summary) {
   for (const Refusal& refusal : refusals) {
     summary.artefact += refusal.status == Status::artefact;
+    summary.lucky += refusal.status == Status::lucky;
     summary.passive += refusal.status == Status::passive;
   }
 }
@@ -281,9 +337,15 @@ TimeSpent evolve(const Experiment& experiment, Evaluator& evaluator, Archive& ar
         experiment, population, generation, static_cast<std::uint32_t>(evaluations), static_cast<std::size_t>(count),
         memory_of_breeder(experiment, remembered), &evaluator.workers(), *migrants);
     time.breed += seconds_since(start);
-    evaluate(newborns, evaluator, provenances, observer);
+    const std::vector<Individual*> elders = due_again(population, experiment, provenances);
+    const std::uint64_t spring_evaluations =
+        evaluate(newborns, elders, population, experiment, evaluator, provenances, observer);
     evaluations += count;
-    Summary summary = summarise(population, newborns, generation);
+    Summary summary = summarise(population, newborns, elders, generation);
+    summary.spring_evaluations = spring_evaluations;
+    std::vector<Individual> measured_again;
+    for (const Individual* elder : elders) measured_again.push_back(*elder);
+    verification.forget(measured_again);
     population.insert(population.end(), newborns.begin(), newborns.end());
     const std::vector<Refusal> refusals = verification.refuse(population, generation);
     add_refusals(refusals, summary);
@@ -303,8 +365,8 @@ TimeSpent evolve(const Experiment& experiment, Evaluator& evaluator, Archive& ar
     summary.wall_time = seconds_since(start);
     time.select += seconds_since(selection);
     const auto departures = migration ? migration->departures(population, generation) : std::vector<Emigration>();
-    writer.begin(
-        {std::move(newborns), std::move(dropped), lives.committed(), summary, remembered, refusals, departures});
+    writer.begin({std::move(newborns), std::move(measured_again), std::move(dropped), lives.committed(), summary,
+                  remembered, refusals, departures});
     if (migration) migration->depart(departures, population, generation);
     observer.generation_done(summary);
     summaries.push_back(summary);

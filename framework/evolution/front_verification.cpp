@@ -17,13 +17,14 @@ void take_fitness(Individual& individual, const Refusal& refusal) {
   result.objectives.clear();
   result.measures.clear();
   result.tests.clear();
+  result.lives.clear();
 }
 
 }  // namespace
 
 std::vector<Refusal> FrontVerification::refuse(std::vector<Individual>& everyone, std::uint32_t generation) {
   std::vector<Refusal> refusals;
-  if (!experiment_.verify_front) return refusals;
+  if (experiment_.verify_front == VerifyFront::off) return refusals;
   const auto start = std::chrono::steady_clock::now();
   for (bool all_hold = false; !all_hold;) {
     const std::vector<Ranked> line = ranked(everyone, generation);
@@ -40,6 +41,10 @@ std::vector<Refusal> FrontVerification::refuse(std::vector<Individual>& everyone
   }
   seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return refusals;
+}
+
+void FrontVerification::forget(std::span<const Individual> individuals) {
+  for (const Individual& one : individuals) verified_.erase(one.id);
 }
 
 /// Returns the individuals with a fitness, without copies, in the order of their layers.
@@ -68,8 +73,7 @@ void FrontVerification::verify_front(const std::vector<Ranked>& line) {
       verified_[individual->id] = std::nullopt;
       continue;
     }
-    champions.push_back(
-        {{individual->id, individual->born, &individual->genome}, individual->result.objectives.front()});
+    champions.push_back({newborn_of(*individual), individual->result.objectives.front()});
     provenances.push_back(*provenance);
   }
   if (champions.empty()) return;

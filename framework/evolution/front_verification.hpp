@@ -18,7 +18,7 @@ class FrontVerification {
   FrontVerification(const Experiment& experiment, Evaluator& evaluator, const RecordedProvenances& provenances)
       : experiment_(experiment), evaluator_(evaluator), provenances_(provenances) {}
 
-  /// Verifies the individuals on the front of `everyone`. Those that do not hold get the status `artefact` or `passive`
+  /// Verifies the individuals on the front of `everyone`. Those that do not hold get the status `artefact`, `lucky` or
   /// and lose their scores, so that others come to the front, until all that are on it hold. Returns the refusals, in
   /// the order in which they were made; none if the experiment does not ask for verification.
   ///
@@ -26,6 +26,9 @@ class FrontVerification {
   /// Individuals whose provenance the evaluator does not have are not verified, because the new life might differ from
   /// the one that was scored.
   std::vector<Refusal> refuse(std::vector<Individual>& everyone, std::uint32_t generation);
+
+  /// Forgets what was found of individuals that have lived again since, so that they are verified again.
+  void forget(std::span<const Individual> individuals);
 
   /// Wall-clock time spent in refuse(), s.
   double seconds() const { return seconds_; }

@@ -5,6 +5,10 @@
 
 namespace evodevo {
 
+Newborn newborn_of(const Individual& individual) {
+  return {.id = individual.id, .generation = individual.born, .genome = &individual.genome, .lives = individual.lives};
+}
+
 std::vector<std::size_t> fittest_first(const std::vector<Individual>& individuals, bool maximise) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < individuals.size(); ++i)

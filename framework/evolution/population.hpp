@@ -40,11 +40,16 @@ struct Individual {
                         ///< operator that made it, "random", "migration", or "start"
   Genome genome;
   Result result;
+  std::uint32_t lives = 1;                ///< number of lives that it has had
+  std::uint32_t measured = 0;             ///< generation in which the last of them were evaluated
   std::uint32_t provenance = 0;           ///< of the result: index into Archive::provenances()
   std::optional<Migrated> migrated = {};  ///< of an immigrant or a founder: where it comes from
 
   std::uint32_t age(std::uint32_t generation) const { return generation - origin; }
 };
+
+/// Returns an individual as a newborn that is born again to all the lives that it has had.
+Newborn newborn_of(const Individual& individual);
 
 /// Returns the indices of those individuals that have a fitness, the best first objective first; ties are in their
 /// order.
@@ -60,8 +65,10 @@ struct Summary {
   std::uint32_t generation = 0;
   std::int64_t evaluations = 0;            ///< number of evaluations since the run began
   std::optional<double> best, median;      ///< of the first objective, over the survivors whose status is `ok`
-  std::int64_t diverged = 0, invalid = 0;  ///< numbers of this generation's evaluations with this status
-  std::int64_t artefact = 0, passive = 0;  ///< numbers of individuals that got this status in this generation
+  std::int64_t diverged = 0, invalid = 0;  ///< numbers of newborns, and of elders that lived again, with this status
+  /// Numbers of individuals that got this status in this generation.
+  std::int64_t artefact = 0, lucky = 0, passive = 0;
+  std::int64_t refused() const { return artefact + lucky + passive; }
   std::int64_t clones = 0;  ///< newborns genetically equal to a member of the population or to an earlier newborn
   std::uint64_t spring_evaluations = 0;  ///< spring evaluations of this generation
   double wall_time = 0;                  ///< wall-clock time of this generation, s
@@ -70,7 +77,7 @@ struct Summary {
 /// What verification found of an individual whose fitness does not hold.
 struct Refusal {
   std::uint32_t individual = 0;
-  Status status = Status::artefact;  ///< artefact or passive
+  Status status = Status::artefact;  ///< artefact, lucky or passive
   std::string reason;                ///< the trial, and the fitness in it and in the run
 };
 

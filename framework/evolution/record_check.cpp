@@ -43,7 +43,11 @@ void check_scores(const Archive& archive, const Experiment& experiment, const In
   const auto tested = std::count_if(experiment.cases.begin(), experiment.cases.end(),
                                     [](const Case& one) { return !one.scenario.empty(); });
   check(result.measures.size(), experiment.measures.size(), "scores that are not objectives");
-  check(result.tests.size(), static_cast<std::size_t>(tested), "scores in scenarios");
+  check(result.tests.size(), static_cast<std::size_t>(tested) * individual.lives, "scores in scenarios");
+  for (const TestScore& test : result.tests)
+    if (test.life < 1 || test.life > individual.lives)
+      archive.refuse("individual " + std::to_string(individual.id) + " has a score in life " +
+                     std::to_string(test.life) + " of " + std::to_string(individual.lives));
 }
 
 /// Checks that the recorded titles of notes are those of the experiment's selection operator.
@@ -139,7 +143,7 @@ void check_resumable(const Archive& archive, const Experiment& experiment) {
   for (const Individual& individual : population) {
     check_genes(archive, experiment, individual);
     check_scores(archive, experiment, individual);
-    archive.life(individual.id);
+    archive.lives(individual.id);
   }
   check_notes(archive, experiment);
   archive.memory();
@@ -147,13 +151,17 @@ void check_resumable(const Archive& archive, const Experiment& experiment) {
   recorded_time_spent(archive);
 }
 
-void check_life(const Archive& archive, const Experiment& experiment, std::uint32_t individual,
-                const LifeRecord& record) {
-  std::uint32_t before = 0;
-  for (const Change& change : record.changes()) {
-    if (const std::string fault = fault_of(change, before, experiment); !fault.empty())
-      archive.refuse("the record of the life of individual " + std::to_string(individual) + " names " + fault);
-    before = change.cycle;
+void check_lives(const Archive& archive, const Experiment& experiment, const Newborn& newborn) {
+  if (newborn.records.size() > newborn.lives)
+    archive.refuse("it has records of " + std::to_string(newborn.records.size()) + " lives of individual " +
+                   std::to_string(newborn.id) + ", which has had " + std::to_string(newborn.lives));
+  for (const LifeRecord& record : newborn.records) {
+    std::uint32_t before = 0;
+    for (const Change& change : record.changes()) {
+      if (const std::string fault = fault_of(change, before, experiment); !fault.empty())
+        archive.refuse("the record of a life of individual " + std::to_string(newborn.id) + " names " + fault);
+      before = change.cycle;
+    }
   }
 }
 

@@ -23,9 +23,8 @@ void check_genes(const Archive& archive, const Experiment& experiment, const Ind
 /// Checks that the run can be resumed: reads and checks everything that evolve() will read.
 void check_resumable(const Archive& archive, const Experiment& experiment);
 
-/// Checks that the cycles and operators in the record of an individual's life exist. Whether the recorded edits fit the
-/// body is checked only when they are applied.
-void check_life(const Archive& archive, const Experiment& experiment, std::uint32_t individual,
-                const LifeRecord& record);
+/// Checks that an individual has had all lives of which there are records, and that the cycles and operators in these
+/// exist. Whether the recorded edits fit the body is checked only when they are applied.
+void check_lives(const Archive& archive, const Experiment& experiment, const Newborn& newborn);
 
 }  // namespace evodevo

@@ -41,12 +41,12 @@ std::vector<Newborn> for_resimulation(const Archive& archive, const Experiment& 
   std::map<std::string, std::vector<std::string>> elsewhere;  // ids by what differs
   for (const Individual* individual : individuals) {
     check_genes(archive, experiment, *individual);
-    Newborn& newborn = newborns.emplace_back(
-        Newborn{individual->id, individual->born, &individual->genome, archive.life(individual->id),
-                archive.folder().string() + ": individual " + std::to_string(individual->id)});
-    if (newborn.record) check_life(archive, experiment, individual->id, *newborn.record);
+    Newborn& newborn = newborns.emplace_back(newborn_of(*individual));
+    newborn.records = archive.lives(individual->id);
+    newborn.recorded_in = archive.folder().string() + ": individual " + std::to_string(individual->id);
+    check_lives(archive, experiment, newborn);
     const Provenance& then = provenances.at(individual->provenance);
-    if (experiment.development.cycles > 0 && !newborn.record && !are_same(then, now))
+    if (experiment.development.cycles > 0 && newborn.records.size() < newborn.lives && !are_same(then, now))
       elsewhere[difference(then, now)].push_back(std::to_string(newborn.id));
   }
   for (const auto& [what, ids] : elsewhere) warn(ids, what);

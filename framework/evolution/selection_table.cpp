@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "evodevo/helpers/selection/pareto.hpp"
+#include "life/measurement/combining.hpp"
 
 namespace evodevo {
 namespace {
@@ -41,10 +42,13 @@ void set_values(const Individual& individual, const Experiment& experiment, cons
   for (std::size_t o = 0; o < experiment.objectives.size(); ++o)
     values.scores.push_back(greater_is_better(o, result.objectives.at(o)));
   for (const Case& one : experiment.cases) values.cases.push_back(values.scores[one.objective]);
+  std::map<std::size_t, std::vector<double>> in_lives;  // the scores in each life, by the position of their case
   for (const TestScore& test : result.tests)
     if (const auto at = indices.find({test.objective, experiment.scenarios.at(test.scenario).name, test.repeat});
         at != indices.end())
-      values.cases[at->second] = greater_is_better(test.objective, test.value);
+      in_lives[at->second].push_back(greater_is_better(test.objective, test.value));
+  for (auto& [at, scores] : in_lives)
+    values.cases[at] = combined(std::move(scores), experiment.over_lives.at(experiment.cases[at].objective), true);
   for (std::size_t i = 0; i < result.measures.size(); ++i)
     if (experiment.measures.at(i).role == Role::descriptor) values.descriptors.push_back(result.measures[i]);
 }

@@ -44,15 +44,9 @@ void warn_of_vain_settings(Experiment& experiment) {
       ": there is gravity, but no floor, so that robots fall without end; add a floor or "
       "remove the gravity";
   if (falls(experiment.scene)) experiment.warnings.push_back("[scene]" + without_end);
-  for (const Scenario& scenario : experiment.scenarios) {
+  for (const Scenario& scenario : experiment.scenarios)
     if (falls(scenario.scene) && !falls(experiment.scene))
       experiment.warnings.push_back("scenario " + scenario.name + without_end);
-    if (scenario.repeat > 1 && !(scenario.start_noise > 0) && !(scenario.damage > 0))
-      experiment.warnings.push_back(
-          "scenario " + scenario.name + ", repeat = " + std::to_string(scenario.repeat) +
-          ": all repeats measure the same, since they differ by start_noise and damage alone; "
-          "set one of these, or remove repeat");
-  }
   if (const std::int64_t births = experiment.newborns(); experiment.random_individuals == births)
     experiment.warnings.push_back(
         "experiment.random_individuals = " + std::to_string(births) +
@@ -88,6 +82,7 @@ Experiment compose(const toml::table& root, const ExperimentSource& source) {
   for (const fs::path& folder : experiment.plugin_folders) folders.push_back(folder.string());
   if (!folders.empty()) record.insert("plugins", toml::table{{"paths", std::move(folders)}});
   read_operators(top, OperatorFactory(registry, registry_faults, experiment), source, experiment, record);
+  check_lives(top, experiment, experiment.develops_by_operators());
   errors.throw_errors();
   warn_of_vain_settings(experiment);
   std::ostringstream text;

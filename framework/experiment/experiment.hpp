@@ -60,6 +60,7 @@ struct Experiment : Settings {
   std::vector<Scheduled> devo;
   std::vector<Scored> fitness;
   std::vector<Objective> objectives;  ///< objectives of all fitness operators, in the order of the operators
+  std::vector<Over> over_lives;       ///< for each objective, how its scores in several lives become one
   std::vector<Objective> measures;    ///< likewise their scores with other roles
   std::vector<Case> cases;  ///< what selection operators see of the scores in scenarios; refers to `scenarios`
 
@@ -67,6 +68,10 @@ struct Experiment : Settings {
   std::unique_ptr<Selection> parent_selection;  ///< chooses parents; null: `selection` does
   std::string child_maker;  ///< name of the one that makes the children itself, without variation; empty: none does
   std::vector<NoteTitle> notes;  ///< what `selection` may note about individuals
+  /// Whether operators develop bodies, or changes replace theirs.
+  bool develops_by_operators() const {
+    return development.cycles > 0 && !devo.empty() && development.control != Control::no_change;
+  }
   /// The operator that chooses parents or makes children, and its index among the selection operators.
   const Selection& breeder() const { return parent_selection ? *parent_selection : *selection; }
   std::size_t breeder_index() const { return parent_selection ? 1 : 0; }

@@ -64,6 +64,7 @@ toml::table to_toml(Settings settings) {
   if (!scenarios.empty()) root.insert("scenario", std::move(scenarios));
   if (settings.islands)
     root.insert("islands", written([&](TomlWriter& writer) { declare(writer, *settings.islands); }));
+  root.insert("selection", written([&](TomlWriter& writer) { declare_remeasure(writer, settings); }));
   root.insert("development", written([&](TomlWriter& writer) { declare_development(writer, settings); }));
   return root;
 }
@@ -79,6 +80,7 @@ Settings read_settings(TomlReader& top, Bodies bodies, Warnings& warnings) {
   read_island_settings(top, settings);
   read_materials(top, settings, warnings);
   visit_table(top, "encoding", false, [&](TomlReader& t) { declare_mass(t, settings); });
+  visit_table(top, "selection", false, [&](TomlReader& t) { declare_remeasure(t, settings); });
   read_scene(top, settings);
   read_scenarios(top, settings);
   read_simulation(top, settings, bodies);

@@ -60,6 +60,11 @@ enum class DrawsBy { inherited, individual };
 template <>
 inline constexpr std::array<std::string_view, 2> names_of<DrawsBy>{"inherited", "individual"};
 
+/// Whether the draws of development are the same in all lives of an individual, or anew in each.
+enum class DrawsBetweenLives { same, anew };
+template <>
+inline constexpr std::array<std::string_view, 2> names_of<DrawsBetweenLives>{"same", "new"};
+
 /// The development of a life. In each of `cycles` cycles, the body is simulated for `cycle_time`, then the devo
 /// operators are applied (paper, section IV-D).
 struct DevelopmentSettings {
@@ -67,6 +72,7 @@ struct DevelopmentSettings {
   double cycle_time = 1;  ///< simulated time of one cycle, s
   bool reset = false;     ///< whether bodies return to their rest positions after every cycle
   DrawsBy draws = DrawsBy::inherited;
+  DrawsBetweenLives draws_between_lives = DrawsBetweenLives::same;
   std::int64_t seed = 1;  ///< of inherited draws; one for all islands
   Control control = Control::off;
   Probe probe = Probe::exact;
@@ -83,7 +89,13 @@ struct Payload {
   bool operator==(const Payload&) const = default;
 };
 
-/// How the scores of several tests become one. No scenario has one of these names.
+/// How individuals are verified before they enter the front: not at all, in the lives that selection has seen, or also
+/// in lives to come.
+enum class VerifyFront { off, trials, lives };
+template <>
+inline constexpr std::array<std::string_view, 3> names_of<VerifyFront>{"off", "trials", "lives"};
+
+/// How the scores of several tests, or lives, become one. No scenario has one of these names.
 enum class Over { mean, worst, median };
 template <>
 inline constexpr std::array<std::string_view, 3> names_of<Over>{"mean", "worst", "median"};
@@ -100,6 +112,9 @@ struct Scenario {
   /// Whether the robot is born and matures in this scene, with this payload; otherwise it has matured in the scene of
   /// the experiment.
   bool develops = false;
+
+  /// Whether something random happens to the robot before it is measured.
+  bool is_random() const { return start_noise > 0 || damage > 0; }
 
   bool operator==(const Scenario&) const = default;
 };
@@ -118,6 +133,9 @@ inline constexpr std::array<std::string_view, 2> names_of<Emigrants>{"best", "ra
 enum class Replaced { nobody, worst, random };
 template <>
 inline constexpr std::array<std::string_view, 3> names_of<Replaced>{"nobody", "worst", "random"};
+
+/// The largest number of lives that an individual may have, with all that [selection] remeasure adds.
+inline constexpr std::int64_t most_lives = 100'000;
 
 inline constexpr std::int64_t most_islands = 10'000;
 
@@ -148,8 +166,12 @@ struct Settings {
   std::int64_t population = 50;
   std::int64_t children = 0;            ///< see newborns(); 0: as many as `population`
   std::int64_t random_individuals = 1;  ///< number of random individuals that enter each generation
+  std::int64_t lives = 1;               ///< number of lives of each individual
+  double birth_noise = 0;               ///< largest offset of a newborn's mass along each axis, relative to its longest
+                                        ///< side, 1
   std::int64_t verify = 1;              ///< number of best individuals to verify when the run ends
-  bool verify_front = false;            ///< whether individuals are verified before they enter the front
+  VerifyFront verify_front = VerifyFront::off;  ///< how individuals are verified before they enter the front
+  std::int64_t remeasure = 0;  ///< number of members of the population that live again in each generation
   std::string start;  ///< folder of the run with whose last population this one begins; empty: random individuals
 
   double mass = 0.2;  ///< mass of one point mass, kg

@@ -8,6 +8,7 @@
 #include "analysis/ground.hpp"
 #include "base/materials.hpp"
 #include "base/philox.hpp"
+#include "life/measurement/scenario_start.hpp"
 
 namespace evodevo {
 namespace {
@@ -63,16 +64,43 @@ Birth::Birth(const Experiment& experiment, const LifeSimulation& simulation)
 }
 
 std::vector<BuiltBody> Birth::build(std::span<const Newborn> newborns) const {
-  std::vector<Blueprint> blueprints(newborns.size());
-  simulation_.simulator().workers().for_each(newborns.size(), [&](std::size_t i) {
-    blueprints[i] = decoded(experiment_, *newborns[i].genome, {.individual = newborns[i].id});
+  std::vector<std::size_t> first;  // of each group of newborns with one genome in common
+  for (std::size_t i = 0; i < newborns.size(); ++i)
+    if (i == 0 || newborns[i].genome != newborns[i - 1].genome) first.push_back(i);
+  std::vector<Blueprint> blueprints(first.size());
+  simulation_.simulator().workers().for_each(first.size(), [&](std::size_t i) {
+    const Newborn& newborn = newborns[first[i]];
+    blueprints[i] = decoded(experiment_, *newborn.genome, {.individual = newborn.id});
   });
-  return build_bodies(std::move(blueprints), simulation_.simulator().neighbours(), simulation_.simulator().workers());
+  std::vector<BuiltBody> built =
+      build_bodies(std::move(blueprints), simulation_.simulator().neighbours(), simulation_.simulator().workers());
+  if (first.size() == newborns.size()) return built;
+  std::vector<BuiltBody> of_each;
+  for (std::size_t group = 0; group < first.size(); ++group) {
+    const std::size_t end = group + 1 < first.size() ? first[group + 1] : newborns.size();
+    of_each.insert(of_each.end(), end - first[group] - 1, built[group]);
+    of_each.push_back(std::move(built[group]));
+  }
+  return of_each;
 }
 
 std::vector<Life> Birth::of(std::span<const Newborn> newborns, const Scenario* scenario) const {
   const BusyClock::Span span(clock_);
+  return begin_all(build(newborns), newborns, scenario);
+}
+
+Cohort Birth::in_all_scenes(std::span<const Newborn> newborns) const {
+  const BusyClock::Span span(clock_);
   std::vector<BuiltBody> built = build(newborns);
+  Cohort cohort;
+  for (const std::size_t scenario : scenarios_that_develop(experiment_))
+    cohort.in_scenarios[scenario] = begin_all(built, newborns, &experiment_.scenarios[scenario]);
+  cohort.lives = begin_all(std::move(built), newborns, nullptr);
+  return cohort;
+}
+
+std::vector<Life> Birth::begin_all(std::vector<BuiltBody> built, std::span<const Newborn> newborns,
+                                   const Scenario* scenario) const {
   std::vector<Life> lives(newborns.size());
   simulation_.simulator().workers().for_each(lives.size(), [&](std::size_t i) {
     Body& body = built[i].body;
@@ -85,13 +113,23 @@ std::vector<Life> Birth::of(std::span<const Newborn> newborns, const Scenario* s
       lives[i].end(Status::invalid, std::move(built[i].failure));
     }
     lives[i].newborn = newborns[i];
-    if (scenario != nullptr) lives[i].newborn.record.reset();
-    if (const auto start = simulation_.conditions().perturbed_birth; start && lives[i].alive()) {
-      perturb(lives[i], experiment_, *start);
-      simulation_.choose_step(lives[i]);
-    }
+    if (scenario != nullptr) lives[i].newborn.records.clear();
+    if (lives[i].alive() && simulation_.conditions().birth_noise > 0) add_noise(lives[i]);
   });
   return lives;
+}
+
+void Birth::add_noise(Life& life) const {
+  LivingBody& living = life.living;
+  std::vector<Vec3>& positions = living.state.position;
+  move_at_random(simulation_.conditions().birth_noise * bounding_box(positions).longest_side(),
+                 draws_of_life(experiment_, life.newborn, "birth", 0),
+                 Rng(philox, {seed_of(experiment_.seed, life.newborn.life), life.newborn.generation, life.newborn.id,
+                              rng_stream::birth_noise}),
+                 living);
+  put_on_ground(positions, *life.scene);
+  living.state.start_energy = total_energy(living.body, living.state, *life.scene);
+  simulation_.choose_step(life);
 }
 
 Life Birth::of(Body body) const {
@@ -131,12 +169,11 @@ Life Birth::amid_life(Body body, State state) const {
 }
 
 void perturb(Life& life, const Experiment& experiment, std::uint32_t start) {
-  constexpr double part = 1e-4;  // largest offset relative to the longest side
   State& state = life.living.state;
-  const double most = part * bounding_box(state.position).longest_side();
-  const Draws draws = draws_for(experiment, life.newborn, "perturbation", start);
+  const double most = perturbation * bounding_box(state.position).longest_side();
+  const Draws draws = draws_of_life(experiment, life.newborn, "perturbation", start);
   move_at_random(most, draws,
-                 Rng(philox, {static_cast<std::uint64_t>(experiment.seed), life.newborn.generation, life.newborn.id,
+                 Rng(philox, {seed_of(experiment.seed, life.newborn.life), life.newborn.generation, life.newborn.id,
                               rng_stream::perturbation + start}),
                  life.living);
 }

@@ -21,12 +21,15 @@ class Birth {
  public:
   Birth(const Experiment& experiment, const LifeSimulation& simulation);
 
-  /// Only decodes genomes and builds bodies, without a payload, a state or a time step.
+  /// Only decodes genomes and builds bodies, without a payload, a state or a time step. If newborns that follow each
+  /// other have one genome in common, it is decoded once.
   std::vector<BuiltBody> build(std::span<const Newborn> newborns) const;
-  /// Returns the lives of newborns, in the same order. They begin in the scene of a scenario, or in that of the
-  /// experiment. In a scenario, operators develop them even if a newborn comes with a record, because records are of
-  /// lives in the experiment's scene.
+  /// Returns the lives of newborns, one for each, in the same order. They begin in the scene of a scenario, or in that
+  /// of the experiment. In a scenario, operators develop them even if a newborn comes with a record, because records
+  /// are of lives in the experiment's scene.
   std::vector<Life> of(std::span<const Newborn> newborns, const Scenario* scenario = nullptr) const;
+  /// Returns the lives of newborns in each scene in which they develop.
+  Cohort in_all_scenes(std::span<const Newborn> newborns) const;
   /// Returns the life of a body that no genome of the experiment describes, such as one from a file.
   Life of(Body body) const;
   /// Returns the life of a body in the middle of its life, in the given state. The life ends as invalid if the body is
@@ -36,6 +39,10 @@ class Birth {
   double seconds() const { return clock_.seconds(); }  ///< wall-clock time spent on making bodies from genomes, s
 
  private:
+  std::vector<Life> begin_all(std::vector<BuiltBody> built, std::span<const Newborn> newborns,
+                              const Scenario* scenario) const;
+  /// Moves the masses of a newborn body at random, and puts it on the ground again.
+  void add_noise(Life& life) const;
   Life begin(BuiltBody built, const Scene& scene, const std::optional<Payload>& payload) const;
   /// Returns the life of a body in the given state, for which no time step has been chosen yet.
   Life life_of(BuiltBody built, State state, const Scene& scene) const;
@@ -50,8 +57,11 @@ class Birth {
 /// one mass after the other from `rng`.
 void move_at_random(double most, const Draws& draws, Rng rng, LivingBody& living);
 
-/// Perturbs a body: moves each mass along each axis at random by up to 1e-4 of the body's longest side. `start` (below
-/// 240) selects the RNG stream.
+/// A small perturbation of a body: the largest offset of a mass along each axis, relative to the body's longest
+/// side, 1.
+inline constexpr double perturbation = 1e-4;
+/// Perturbs a body: moves each mass along each axis at random by up to `perturbation` of the body's longest side.
+/// `start` (below 240) selects the RNG stream.
 void perturb(Life& life, const Experiment& experiment, std::uint32_t start);
 
 }  // namespace evodevo

@@ -22,6 +22,8 @@ bool adds_energy(const Change& change) {
          change.lengths_given;
 }
 
+bool is_recorded(const Life& life) { return !life.newborn.records.empty(); }
+
 /// Returns a function that computes the energy of a living body, J.
 auto energy_of(const Life& life) {
   return [&life] { return total_energy(life.living.body, life.living.state, *life.scene); };
@@ -33,7 +35,7 @@ struct DevelopmentLoop::Choices {
   /// `id` is that of the stream of an individual.
   Choices(const DevelopmentLoop& loop, const Life& life, int cycle, std::string_view what, std::uint32_t id)
       : context(loop.context_of(life, cycle, {}, {})), rng(loop.stream_of(life, {}, id)), chance(context, rng) {
-    context.draws = draws_for(loop.experiment_, life.newborn, what, static_cast<std::uint64_t>(cycle));
+    context.draws = draws_of_development(loop.experiment_, life.newborn, what, static_cast<std::uint64_t>(cycle));
   }
   Choices(const Choices&) = delete;  // `chance` refers to the others
   Choices& operator=(const Choices&) = delete;
@@ -52,19 +54,18 @@ double DevelopmentLoop::duration() const {
 void DevelopmentLoop::run(std::span<Life> lives, const Progress& progress) const {
   std::vector<std::vector<Change>> recorded(lives.size());
   for (std::size_t i = 0; i < lives.size(); ++i)
-    if (const auto& record = lives[i].newborn.record) recorded[i] = record->changes();
+    if (is_recorded(lives[i])) recorded[i] = lives[i].newborn.records.front().changes();
   const bool yoked = experiment_.development.control == Control::random_places;
   std::vector<std::optional<Yoke>> yokes(lives.size());
   if (yoked) yokes = yokes_of(lives);
   const auto change = [&](std::size_t i, int cycle) {
-    if (lives[i].newborn.record)
+    if (is_recorded(lives[i]))
       apply_recorded(recorded[i], lives[i], cycle);
     else if (yoked)
       change_as_in(*yokes[i], lives[i], cycle);
     else
       apply_operators(lives[i], cycle);
   };
-  const auto is_recorded = [](const Life& life) { return life.newborn.record.has_value(); };
   const bool observed = !yoked && !std::all_of(lives.begin(), lives.end(), is_recorded);
   run_cycles(lives, observed, change, progress);
 }
@@ -73,7 +74,7 @@ std::vector<std::optional<Yoke>> DevelopmentLoop::yokes_of(std::span<const Life>
   std::vector<std::size_t> yoked;
   std::vector<Life> before;
   for (std::size_t i = 0; i < lives.size(); ++i) {
-    if (lives[i].newborn.record) continue;
+    if (is_recorded(lives[i])) continue;
     yoked.push_back(i);
     before.push_back(lives[i]);
   }
@@ -81,7 +82,7 @@ std::vector<std::optional<Yoke>> DevelopmentLoop::yokes_of(std::span<const Life>
   run_cycles(before, true, change, [](double) {});
   std::vector<std::optional<Yoke>> yokes(lives.size());
   for (std::size_t i = 0; i < before.size(); ++i)
-    yokes[yoked[i]].emplace(lives[yoked[i]].living.body, before[i].result.record);
+    yokes[yoked[i]].emplace(lives[yoked[i]].living.body, before[i].record);
   return yokes;
 }
 
@@ -200,7 +201,8 @@ void DevelopmentLoop::apply_operator(Life& life, int cycle, std::size_t index) c
   DevoContext context = context_of(life, cycle, schedule, devo_request(experiment_, index), genome, own);
   context.mass_memory = memory.masses.view("mass");
   context.spring_memory = memory.springs.view("spring");
-  context.draws = draws_for(experiment_, life.newborn, "operator " + label, static_cast<std::uint64_t>(cycle));
+  context.draws =
+      draws_of_development(experiment_, life.newborn, "operator " + label, static_cast<std::uint64_t>(cycle));
   Rng rng = stream_of(life, context.draws, rng_stream::devo(index, cycle));
   const auto develop = [&] {
     Edits edits;
@@ -217,8 +219,9 @@ void DevelopmentLoop::change_as_in(Yoke& yoke, Life& life, int cycle) const {
   Rng rng = stream_of(life, {}, rng_stream::random_places(cycle));
   for (const Amount& amount : yoke.amounts_after(cycle)) {
     DevoContext context = context_of(life, cycle, {}, {});
-    context.draws = draws_for(experiment_, life.newborn, "random places of " + experiment_.devo.at(amount.op).label,
-                              static_cast<std::uint64_t>(cycle));
+    context.draws =
+        draws_of_development(experiment_, life.newborn, "random places of " + experiment_.devo.at(amount.op).label,
+                             static_cast<std::uint64_t>(cycle));
     Chance chance(context, rng);
     make(change_by(at_random_places(amount, context, yoke.surplus, chance), amount.op, context), life);
   }
@@ -227,7 +230,7 @@ void DevelopmentLoop::change_as_in(Yoke& yoke, Life& life, int cycle) const {
 
 Rng DevelopmentLoop::stream_of(const Life& life, const Draws& draws, std::uint32_t id) const {
   if (draws.inherited()) return draws.stream("stream");
-  return Rng(philox, {static_cast<std::uint64_t>(experiment_.seed), life.newborn.generation, life.newborn.id, id});
+  return Rng(philox, {seed_of(experiment_.seed, life.newborn.draws), life.newborn.generation, life.newborn.id, id});
 }
 
 DevoContext DevelopmentLoop::context_of(const Life& life, int cycle, const Schedule& schedule,
@@ -264,7 +267,7 @@ void DevelopmentLoop::make(Change change, Life& life) const {
     allow_energy(life, energy_of(life), apply_it);
   else
     apply_it();
-  life.result.record.add(change);
+  life.record.add(change);
 }
 
 void DevelopmentLoop::apply_recorded(const std::vector<Change>& changes, Life& life, int cycle) const {

@@ -5,7 +5,9 @@
 #include <memory>
 #include <mutex>
 #include <numeric>
+#include <utility>
 
+#include "life/measurement/combining.hpp"
 #include "threads/parallel.hpp"
 
 namespace evodevo {
@@ -16,6 +18,17 @@ namespace {
 std::size_t cohorts_for(std::size_t newborns, std::size_t most) {
   return std::clamp<std::size_t>(std::max(std::min(newborns / smallest_cohort, most / 4), newborns / large_cohort), 1,
                                  most);
+}
+
+/// Returns `count` newborns of a cohort, which keeps what is left of them.
+Cohort taken(Cohort& from, std::size_t first, std::size_t count) {
+  const auto of = [&](std::vector<Life>& lives) {
+    const auto begin = std::make_move_iterator(lives.begin() + static_cast<std::ptrdiff_t>(first));
+    return std::vector<Life>(begin, begin + static_cast<std::ptrdiff_t>(count));
+  };
+  Cohort part{of(from.lives)};
+  for (auto& [scenario, lives] : from.in_scenarios) part.in_scenarios[scenario] = of(lives);
+  return part;
 }
 
 }  // namespace
@@ -29,12 +42,13 @@ Evaluation::Evaluation(const Experiment& experiment, Simulator& simulator, const
       birth(experiment, simulation),
       development(experiment, simulation, windows),
       measurement(experiment, simulation, windows),
-      experiment_(experiment),
-      developing_scenarios_(scenarios_that_develop(experiment)) {}
+      experiment_(experiment) {}
 
 std::vector<Result> Evaluation::evaluate(std::span<const Newborn> newborns, const Progress& progress) const {
+  std::size_t lives = 0;
+  for (const Newborn& newborn : newborns) lives += newborn.lives;
   const auto most = static_cast<std::size_t>(simulation.simulator().concurrency());
-  return evaluate_in(cohorts_for(newborns.size(), most), newborns, progress);
+  return evaluate_in(std::min(cohorts_for(lives, most), std::max<std::size_t>(1, newborns.size())), newborns, progress);
 }
 
 std::vector<Result> Evaluation::evaluate_in(std::size_t cohorts, std::span<const Newborn> newborns,
@@ -64,47 +78,48 @@ std::vector<Result> Evaluation::evaluate_in(std::size_t cohorts, std::span<const
 }
 
 std::vector<Result> Evaluation::evaluate_cohort(std::span<const Newborn> newborns, const Progress& progress) const {
-  const double developing = development.duration() * static_cast<double>(1 + developing_scenarios_.size()),
+  const std::size_t scenes = 1 + scenarios_that_develop(experiment_).size();
+  const double developing = development.duration() * static_cast<double>(scenes),
                whole = developing + measurement.duration(), share = whole > 0 ? developing / whole : 0;
-  std::vector<Life> born = birth.of(newborns);
-  std::vector<Result> results;
-  while (results.size() < newborns.size()) {
-    const auto before = static_cast<double>(results.size());
-    const std::size_t count = windows.fitting_within_life(std::span(born).subspan(results.size()));
-    const auto first = born.begin() + static_cast<std::ptrdiff_t>(results.size());
+  const std::vector<Newborn> all = each_life(experiment_, newborns);
+  Cohort born = birth.in_all_scenes(all);
+  std::vector<Result> of_lives;
+  while (of_lives.size() < all.size()) {
+    const std::size_t before = of_lives.size(),
+                      count = windows.fitting_within_life(std::span(born.lives).subspan(before));
     const auto group_progress = [&](double done) {
-      progress((before + done * static_cast<double>(count)) / static_cast<double>(newborns.size()));
+      progress((static_cast<double>(before) + done * static_cast<double>(count)) / static_cast<double>(all.size()));
     };
-    Matured group = matured({std::make_move_iterator(first), std::make_move_iterator(first + count)},
-                            [&](double done) { group_progress(done * share); });
+    Cohort group = matured(taken(born, before, count), [&](double done) { group_progress(done * share); });
     measurement.run(group, [&](double done) { group_progress(share + done * (1 - share)); });
-    for (Life& life : group.lives) results.push_back(std::move(life.result));
+    for (Life& life : group.lives) {
+      life.result.records.push_back(std::move(life.record));
+      of_lives.push_back(std::move(life.result));
+    }
+  }
+  std::vector<Result> results;
+  auto next = std::make_move_iterator(of_lives.begin());
+  for (const Newborn& newborn : newborns) {
+    const auto first = std::exchange(next, next + newborn.lives);
+    results.push_back(of_all_lives(experiment_, {first, next}, newborn.life));
   }
   return results;
 }
 
-Matured Evaluation::matured(std::vector<Life> born, const Progress& progress) const {
-  const auto count = static_cast<std::ptrdiff_t>(born.size());
-  std::vector<Newborn> newborns;
-  if (!developing_scenarios_.empty())
-    for (const Life& life : born) newborns.push_back(life.newborn);
-  std::vector<Life> all = std::move(born);  // they develop in one batch, which uses a device better than several
-  for (const std::size_t scenario : developing_scenarios_) {
-    std::vector<Life> lives = birth.of(newborns, &experiment_.scenarios[scenario]);
-    std::move(lives.begin(), lives.end(), std::back_inserter(all));
-  }
+Cohort Evaluation::matured(Cohort born, const Progress& progress) const {
+  const auto count = static_cast<std::ptrdiff_t>(born.lives.size());
+  std::vector<Life> all = std::move(born.lives);  // they develop in one batch, which uses a device better than several
+  for (auto& [scenario, lives] : born.in_scenarios) std::move(lives.begin(), lives.end(), std::back_inserter(all));
   development.run(all, progress);
-  Matured matured;
   auto next = std::make_move_iterator(all.begin());
-  matured.lives.assign(next, next + count);
-  for (const std::size_t scenario : developing_scenarios_) {
+  born.lives.assign(next, next + count);
+  for (auto& [scenario, lives] : born.in_scenarios) {
     next += count;
-    std::vector<Life>& lives = matured.in_scenarios[scenario];
     lives.assign(next, next + count);
     for (std::size_t i = 0; i < lives.size(); ++i)
-      matured.lives[i].result.spring_evaluations += lives[i].result.spring_evaluations;
+      born.lives[i].result.spring_evaluations += lives[i].result.spring_evaluations;
   }
-  return matured;
+  return born;
 }
 
 }  // namespace evodevo

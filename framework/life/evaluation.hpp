@@ -29,8 +29,9 @@ inline constexpr std::size_t large_cohort = 64;
 ///                  \_______ all three use _______/
 ///                            simulation
 ///
-/// Newborns also develop in the scenarios that ask for it, in lives of their own. A batch is divided into cohorts:
-/// while some are simulated, others develop. Experiment and simulator must outlive this object.
+/// Newborns also develop in the scenarios that ask for it, in lives of their own. A batch is divided into cohorts, each
+/// with all lives of its newborns: while some cohorts are simulated, others develop. Experiment and simulator must
+/// outlive this object.
 class Evaluation {
  public:
   Evaluation(const Experiment& experiment, Simulator& simulator);
@@ -38,16 +39,17 @@ class Evaluation {
   Evaluation(const Evaluation&) = delete;  // the stages refer to each other
   Evaluation& operator=(const Evaluation&) = delete;
 
-  /// Returns the results in the order of the newborns. The result of a newborn does not depend on the others in the
-  /// batch. Calls `progress` with the fraction of the simulation that is done, 0 to 1, from one thread at a time.
+  /// Returns the results in the order of the newborns. The result of a newborn is that of all its lives, as
+  /// of_all_lives() combines them, and does not depend on the others in the batch. Calls `progress` with the fraction
+  /// of the simulation that is done, 0 to 1, from one thread at a time.
   std::vector<Result> evaluate(std::span<const Newborn> newborns, const Progress& progress) const;
   /// The same in so many cohorts, 1 or more, for callers that evaluate several batches at the same time.
   std::vector<Result> evaluate_in(std::size_t cohorts, std::span<const Newborn> newborns,
                                   const Progress& progress) const;
 
-  /// Lets lives develop until they have matured, and lives of the same newborns in the scenarios that develop. The
-  /// spring evaluations of all of them count in the results of `born`. Calls `progress` as DevelopmentLoop::run() does.
-  Matured matured(std::vector<Life> born, const Progress& progress) const;
+  /// Lets newborns develop in each scene until they have matured. The spring evaluations in scenarios count in the
+  /// results of Cohort::lives. Calls `progress` as DevelopmentLoop::run() does.
+  Cohort matured(Cohort born, const Progress& progress) const;
 
   PhaseTimes phase_times() const { return {birth.seconds(), simulation.seconds(), development.seconds()}; }
 
@@ -61,7 +63,6 @@ class Evaluation {
   std::vector<Result> evaluate_cohort(std::span<const Newborn> newborns, const Progress& progress) const;
 
   const Experiment& experiment_;
-  std::vector<std::size_t> developing_scenarios_;
 };
 
 }  // namespace evodevo

@@ -3,16 +3,46 @@
 #include "base/philox.hpp"
 
 namespace evodevo {
+namespace {
 
-Draws draws_for(const Experiment& experiment, const Newborn& newborn, std::string_view what, std::uint64_t number) {
+Draws draws_in(std::uint32_t repetition, const Experiment& experiment, const Newborn& newborn, std::string_view what,
+               std::uint64_t number) {
   const bool inherited = experiment.development.draws == DrawsBy::inherited;
-  const std::uint64_t origin = Tag(what, number).key;
-  if (inherited) {
-    const std::uint64_t key = mixed(origin, static_cast<std::uint64_t>(experiment.development.seed));
-    return {philox, newborn.life > 0 ? mixed(key, newborn.life) : key, origin, true};
-  }
-  const std::uint64_t of_run = mixed(origin, static_cast<std::uint64_t>(experiment.seed));
-  return {philox, mixed(mixed(of_run, newborn.generation), newborn.id), origin, false};
+  const std::uint64_t origin = Tag(what, number).key,
+                      seed = seed_of(inherited ? experiment.development.seed : experiment.seed, repetition),
+                      key = mixed(origin, seed);
+  return {philox, inherited ? key : mixed(mixed(key, newborn.generation), newborn.id), origin, inherited};
+}
+
+}  // namespace
+
+std::uint64_t seed_of(std::int64_t seed, std::uint32_t repetition) {
+  const auto own = static_cast<std::uint64_t>(seed);
+  return repetition == 1 ? own : mixed(own, repetition);
+}
+
+std::vector<Newborn> each_life(const Experiment& experiment, std::span<const Newborn> newborns) {
+  const bool anew = experiment.development.draws_between_lives == DrawsBetweenLives::anew;
+  std::vector<Newborn> all;
+  for (const Newborn& newborn : newborns)
+    for (std::uint32_t i = 0; i < newborn.lives; ++i) {
+      Newborn& one = all.emplace_back(newborn);
+      one.life += i;
+      one.lives = 1;
+      one.records.clear();
+      if (i < newborn.records.size()) one.records = {newborn.records[i]};
+      one.draws = anew ? one.life : 1;
+    }
+  return all;
+}
+
+Draws draws_of_development(const Experiment& experiment, const Newborn& newborn, std::string_view what,
+                           std::uint64_t number) {
+  return draws_in(newborn.draws, experiment, newborn, what, number);
+}
+
+Draws draws_of_life(const Experiment& experiment, const Newborn& newborn, std::string_view what, std::uint64_t number) {
+  return draws_in(newborn.life, experiment, newborn, what, number);
 }
 
 }  // namespace evodevo

@@ -140,7 +140,7 @@ std::vector<FilmedLife> film_lives(const Experiment& experiment, Simulator& simu
   FilmingSimulator camera(simulator, filmed_frames_per_second);
   const Evaluation evaluation(experiment, camera);
   const Scenario* scenario = experiment.scenarios.empty() ? nullptr : &experiment.scenarios[test.scenario];
-  Matured matured{evaluation.birth.of(newborns, scenario != nullptr && scenario->develops ? scenario : nullptr)};
+  Cohort matured{evaluation.birth.of(newborns, scenario != nullptr && scenario->develops ? scenario : nullptr)};
   std::vector<Life>& lives = matured.lives;
   std::vector<std::vector<std::vector<std::uint32_t>>> numbers(lives.size());  // by life and cycle
   const auto note_numbers = [&] {
@@ -163,7 +163,8 @@ std::vector<FilmedLife> film_lives(const Experiment& experiment, Simulator& simu
     const std::size_t cycles = std::min(film.size(), static_cast<std::size_t>(experiment.development.cycles));
     for (std::size_t shot = 0; shot < film.size(); ++shot)  // a scenario may have damaged the body
       film[shot].numbers = shot < cycles ? numbers[i][shot] : lives[i].living.numbers.numbers();
-    filmed.push_back({std::move(lives[i].result), std::move(film), cycles});
+    lives[i].result.records.push_back(std::move(lives[i].record));
+    filmed.push_back({lives[i].newborn.life, std::move(lives[i].result), std::move(film), cycles});
   }
   return filmed;
 }

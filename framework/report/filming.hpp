@@ -70,6 +70,7 @@ class FilmingSimulator final : public Simulator {
 
 /// A life and its film.
 struct FilmedLife {
+  std::uint32_t number = 1;  ///< of the life
   Result result;
   Film film;               ///< one shot for each cycle, then those of the final evaluation; empty if there was no body
   std::size_t cycles = 0;  ///< number of shots that are development cycles
@@ -77,8 +78,8 @@ struct FilmedLife {
 
 inline constexpr double filmed_frames_per_second = 60;  ///< frames per simulated second
 
-/// Simulates newborns again as in their run, and films them. If the experiment has scenarios, their final evaluation is
-/// that of one test alone. The film of a life that diverges ends early.
+/// Simulates one life of each newborn again as in its run, and films it. If the experiment has scenarios, their final
+/// evaluation is that of one test alone. The film of a life that diverges ends early.
 std::vector<FilmedLife> film_lives(const Experiment& experiment, Simulator& simulator,
                                    std::span<const Newborn> newborns, const Test& test = {});
 

@@ -104,7 +104,7 @@ Json population_json(const Archive& archive, std::uint32_t generation) {
     if (individual.result.status == Status::ok)
       list.push_back({{"id", individual.id},
                       {"age", individual.age(generation)},
-                      {"objectives", objectives_json(objectives, individual.result)},
+                      {"objectives", objectives_json(objectives, individual.result.objectives)},
                       {"measures", measures_json(archive, individual.id)}});
   return list;
 }
@@ -164,9 +164,32 @@ Json random_robot(const Experiment& experiment, const Individual& individual, st
   return robot;
 }
 
+/// A life that a page shows.
+struct ShownLife {
+  const Actor* actor = nullptr;
+  Newborn newborn;
+};
+
+std::vector<ShownLife> shown_lives(const Archive& archive, const Experiment& experiment,
+                                   const std::vector<Actor>& actors, const std::optional<std::int64_t>& life,
+                                   const std::string& device) {
+  std::vector<const Individual*> individuals;
+  for (const Actor& actor : actors) individuals.push_back(&actor.individual);
+  const std::vector<Newborn> newborns = for_resimulation(archive, experiment, individuals, device);
+  std::vector<ShownLife> shown;
+  for (std::size_t i = 0; i < actors.size(); ++i) {
+    std::vector<Newborn> lives = each_life(experiment, {&newborns[i], 1});
+    const std::int64_t most = actors[i].is_elite() ? 1 : experiment.lives;  // more if it has lived again
+    for (Newborn& one : lives)
+      if (life ? one.life == *life : one.life <= most) shown.push_back({&actors[i], std::move(one)});
+  }
+  return shown;
+}
+
 Json robot_json(const Archive& archive, const Actor& role, const FilmedLife& life, const Experiment& experiment,
                 std::size_t scenario, std::size_t budget) {
   Json robot = individual_json(archive, role.individual);
+  robot["life"] = life.number;
   robot["role"] = role.role;
   robot["reason"] = role.individual.result.reason;
   robot["again"] = life.result.objectives;  // of the test that is filmed
@@ -178,8 +201,8 @@ Json robot_json(const Archive& archive, const Actor& role, const FilmedLife& lif
 /// before them; each half is shared evenly. What is not used is left to the films after it.
 class FilmBudget {
  public:
-  FilmBudget(std::size_t bytes, const std::vector<Actor>& actors) : left_(bytes) {
-    for (const Actor& actor : actors) ++(actor.is_elite() ? elites_ : others_);
+  FilmBudget(std::size_t bytes, const std::vector<ShownLife>& lives) : left_(bytes) {
+    for (const ShownLife& life : lives) ++(life.actor->is_elite() ? elites_ : others_);
     reserved_ = others_ > 0 && elites_ > 0 ? bytes / 2 : 0;
   }
 
@@ -257,18 +280,18 @@ Json reported_run(const Archive& archive, const Experiment& experiment, Simulato
   run["champions"] = champions_json(archive, experiment, actors);
   run["robots"] = Json::array();
   const Scene& scene = experiment.scenarios.empty() ? experiment.scene : experiment.scenarios[scenario].scene;
-  std::vector<const Individual*> individuals;
-  for (const Actor& actor : actors) individuals.push_back(&actor.individual);
-  const std::vector<Newborn> newborns = for_resimulation(archive, experiment, individuals, simulator.device());
+  const std::vector<ShownLife> shown = shown_lives(archive, experiment, actors, cast.life, simulator.device());
+  std::vector<Newborn> newborns;
+  for (const ShownLife& one : shown) newborns.push_back(one.newborn);
   SeenRegion region;
-  FilmBudget films(budget - std::min(budget, run["champions"].dump().size()), actors);
-  for (std::size_t first = 0; first < actors.size(); first += filmed_together) {
-    const std::size_t count = std::min(filmed_together, actors.size() - first);
+  FilmBudget films(budget - std::min(budget, run["champions"].dump().size()), shown);
+  for (std::size_t first = 0; first < shown.size(); first += filmed_together) {
+    const std::size_t count = std::min(filmed_together, shown.size() - first);
     const std::vector<FilmedLife> lives =
         film_lives(experiment, simulator, std::span(newborns).subspan(first, count), {scenario});
     region.include(lives);
     for (std::size_t i = 0; i < count; ++i) {
-      const Actor& actor = actors[first + i];
+      const Actor& actor = *shown[first + i].actor;
       const Json& robot =
           run["robots"].emplace_back(robot_json(archive, actor, lives[i], experiment, scenario, films.share(actor)));
       films.spend(actor, robot.dump().size());

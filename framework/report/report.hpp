@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,12 +20,14 @@ struct Cast {
   std::size_t ancestors = 3;               ///< number of ancestors of the best individual, evenly spaced, founder first
   std::size_t elites = 0;                  ///< number of best individuals of niches, if the run has any
   std::vector<std::uint32_t> individuals;  ///< ids of further individuals, which are in the archive
+  std::optional<std::int64_t>
+      life;  ///< the only life to show; if not given, as many as newborns have, but of elites one
 };
 
 /// Returns the data of a run for a report: numbers of the run, its population, and the robots of `cast` with films.
-/// `simulator` simulates the robots again (evolution/resimulation.hpp). `budget` is the largest total size of the
-/// films, bytes. If the experiment has scenarios, the films end in the first repeat of the one with index `scenario`,
-/// whose ground they show.
+/// `simulator` simulates the robots again (evolution/resimulation.hpp), each life of a robot being one of the page's.
+/// `budget` is the largest total size of the films, bytes. If the experiment has scenarios, the films end in the first
+/// repeat of the one with index `scenario`, whose ground they show.
 nlohmann::ordered_json reported_run(const Archive& archive, const Experiment& experiment, Simulator& simulator,
                                     const Cast& cast, std::size_t budget, std::size_t scenario = 0);
 

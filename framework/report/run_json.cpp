@@ -86,14 +86,17 @@ Json failures_json(const std::vector<Failure>& failures) {
   return list;
 }
 
-/// The scores of an individual in each scenario, by repeat and objective.
+/// The scores of an individual in each scenario, by life, repeat and objective.
 Json tests_json(const std::vector<ArchivedTest>& tests) {
   Json list = Json::array();
   for (const ArchivedTest& test : tests) {
-    const bool is_next =
-        list.empty() || list.back()["scenario"] != test.scenario || list.back()["repeat"] != test.repeat + 1;
+    const bool is_next = list.empty() || list.back()["life"] != test.life || list.back()["scenario"] != test.scenario ||
+                         list.back()["repeat"] != test.repeat + 1;
     if (is_next)
-      list.push_back({{"scenario", test.scenario}, {"repeat", test.repeat + 1}, {"objectives", Json::object()}});
+      list.push_back({{"life", test.life},
+                      {"scenario", test.scenario},
+                      {"repeat", test.repeat + 1},
+                      {"objectives", Json::object()}});
     list.back()["objectives"][test.objective] = test.value;
   }
   return list;
@@ -133,6 +136,7 @@ Json summary_json(const Summary& summary) {
           {"diverged", summary.diverged},
           {"invalid", summary.invalid},
           {"artefact", summary.artefact},
+          {"lucky", summary.lucky},
           {"passive", summary.passive},
           {"clones", summary.clones},
           {"spring_evaluations", summary.spring_evaluations},
@@ -186,9 +190,9 @@ std::vector<BestSoFar> best_over_generations(const Archive& archive) {
   return all;
 }
 
-Json objectives_json(const std::vector<Objective>& objectives, const Result& result) {
+Json objectives_json(const std::vector<Objective>& objectives, const std::vector<double>& scores) {
   Json values = Json::object();
-  for (std::size_t i = 0; i < result.objectives.size(); ++i) values[objectives.at(i).name] = result.objectives[i];
+  for (std::size_t i = 0; i < scores.size(); ++i) values[objectives.at(i).name] = scores[i];
   return values;
 }
 
@@ -202,14 +206,16 @@ Json individual_json(const Archive& archive, const ArchivedIndividual& individua
   const std::vector<Objective> objectives = archive.objectives();
   const auto line = ancestry(archive, individual.id);
   const std::vector<Summary> generations = archive.generations();
-  Json ancestors = Json::array();
+  Json ancestors = Json::array(), lives = Json::array();
+  for (const std::vector<double>& life : individual.result.lives) lives.push_back(objectives_json(objectives, life));
   for (std::size_t i = 1; i < line.size(); ++i) ancestors.push_back(line[i].id);
   const auto verification = archive.verification(individual.id);
   return {{"individual", individual.id},
           {"generation", individual.born},
           {"age", last_age(individual, generations.empty() ? 0 : generations.back().generation)},
           {"status", name(individual.result.status)},
-          {"objectives", objectives_json(objectives, individual.result)},
+          {"objectives", objectives_json(objectives, individual.result.objectives)},
+          {"lives", std::move(lives)},
           {"measures", measures_json(archive, individual.id)},
           {"notes", notes_json(archive, individual.id)},
           {"scenarios", tests_json(archive.tests(individual.id))},

@@ -32,8 +32,8 @@ struct BestSoFar {
 /// Returns the best so far of each generation in which the best changed, in the order of birth.
 std::vector<BestSoFar> best_over_generations(const Archive& archive);
 
-/// Returns the objectives of an individual by their names; none if it has no fitness.
-nlohmann::ordered_json objectives_json(const std::vector<Objective>& objectives, const Result& result);
+/// Returns the scores of objectives by their names; none if there are no scores.
+nlohmann::ordered_json objectives_json(const std::vector<Objective>& objectives, const std::vector<double>& scores);
 /// Returns the scores of an individual that are not objectives, by their names.
 nlohmann::ordered_json measures_json(const Archive& archive, std::uint32_t id);
 

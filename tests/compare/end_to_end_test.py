@@ -172,7 +172,7 @@ class Comparison(InOwnFolder):
 
     def test_the_best_are_compared_in_scenarios(self):
         self.plain.write_text(PLAIN + '\n[[scenario]]\nname = "flat"\n')
-        uphill = '[[scenario]]\nname = "uphill"\nrepeat = 2\n[scenario.gravity]\nslope = -5\n'
+        uphill = '[[scenario]]\nname = "uphill"\nrepeat = 2\nstart_noise = 0.01\n[scenario.gravity]\nslope = -5\n'
         self.developing.write_text(DEVELOPING + uphill + '[[scenario]]\nname = "flat"\n')
         said = self.compared("--sweep", "fitness.0.over=worst,flat")
         self.assertEqual(said.count("| flat |"), 1)

@@ -17,14 +17,16 @@ FAR = Quantity("distance", "m", True)
 CHEAP = Quantity("work", "J", False)
 
 
-def shown(best, springs=10, marks=None, scenarios=(), reborn=(), axes=None, maps=()):
+def shown(best, springs=10, marks=None, scenarios=(), reborn=(), redrawn=(), axes=None, maps=()):
     """Returns the output of `show --json` for a run in which every generation costs the same. `scenarios` are the
-    scores of the best robot: pairs of a scenario and the score in one repeat. `reborn`: whether it held when it was born
-    again. `maps`: coverage and QD score of each generation, if there are axes."""
+    scores of the best robot: pairs of a scenario and the score in one repeat. `reborn`, `redrawn`: whether it held
+    when it was born again. `maps`: coverage and QD score of each generation, if there are axes."""
     tests = [{"scenario": name, "repeat": 1, "objectives": {"distance": score, "work": 0}} for name, score in scenarios]
-    trials = [{"trial": "settled", "held": True}, *({"trial": f"reborn-{i}", "held": held} for i, held in enumerate(reborn))]
+    trials = [{"trial": "settled", "held": True}]
+    for kind, lives in (("reborn", reborn), ("redrawn", redrawn)):
+        trials += [{"trial": f"{kind}-{i}", "held": held} for i, held in enumerate(lives)]
     verification = None if marks is None else {"marks": marks, "trials": trials}
-    counts = {"diverged": 1, "invalid": 0, "artefact": 1, "passive": 2, "spring_evaluations": springs, "wall_time": 0.5}
+    counts = {"diverged": 1, "invalid": 0, "artefact": 1, "lucky": 0, "passive": 2, "spring_evaluations": springs, "wall_time": 0.5}
     of_generations = [dict(zip(("coverage", "qd_score"), each)) for each in maps] if axes else [None] * len(best)
     return {
         "best": None if set(best) == {None} else {"verification": verification, "scenarios": tests},
@@ -156,15 +158,15 @@ class Reports(unittest.TestCase):
         marks = [[], [], ["artefact"], ["passive"], ["artefact", "passive"], None]
         runs = [history(shown([1], marks=some), FAR) for some in marks]
         histories = several(some=[*runs, history(shown([None]), FAR)], none=runs[-1:])
-        some, none = (line.split(" | ")[-4:] for line in report.whole_runs(histories).splitlines()[-2:])
-        self.assertEqual(some, ["2 of 5", "2 of 5", "2 of 5", "- |"])
-        self.assertEqual(none, ["not verified", "-", "-", "- |"])
+        some, none = (line.split(" | ")[-5:] for line in report.whole_runs(histories).splitlines()[-2:])
+        self.assertEqual(some, ["2 of 5", "2 of 5", "2 of 5", "-", "- |"])
+        self.assertEqual(none, ["not verified", "-", "-", "-", "- |"])
 
     def test_those_born_again_that_kept_their_score_in_most_lives_are_counted(self):
         lives = [[True, True, False], [True, False, False], [True, True, True], [True, False], []]
-        runs = [history(shown([1], marks=[], reborn=some), FAR) for some in lives]
+        runs = [history(shown([1], marks=[], reborn=some, redrawn=some[:1]), FAR) for some in lives]
         line = report.whole_runs(several(some=runs)).splitlines()[-1]
-        self.assertEqual(line.split(" | ")[-4:], ["5 of 5", "0 of 5", "0 of 5", "2 of 4 |"])
+        self.assertEqual(line.split(" | ")[-5:], ["5 of 5", "0 of 5", "0 of 5", "2 of 4", "4 of 4 |"])
 
     def test_other_builds_are_named(self):
         def by(run_hash="aa", program="p", device="cpu", evaluations=1):

@@ -79,8 +79,8 @@ TEST_F(Command, ShowTellsWhichBlocksCameWithEachChild) {
 }
 
 TEST_F(Command, ARunThatVerifiesItsFrontTellsWhomItRefuses) {
-  const std::string told = run({"experiment.verify_front=true"});
-  EXPECT_THAT(told, ContainsRegex("artefact or passive [0-9.]+ %"));
+  const std::string told = run({"experiment.verify_front=trials"});
+  EXPECT_THAT(told, ContainsRegex("refused [0-9.]+ %"));
   EXPECT_THAT(told, ContainsRegex("time: .*, verify [0-9]+ %"));
   const auto json = shown();
   const std::string text = show();
@@ -200,7 +200,7 @@ TEST_F(Command, WhatCanNeverWalkIsToldByCheckAndByTheRun) {
 
 TEST_F(Command, EachLineOfTheSummaryFitsATerminalAndEachCommandAShell) {
   const std::string file = scratch_.write("my exp.toml", small_experiment), folder = (scratch_ / "my run").string();
-  const std::string told = said({"run", file, "--out", folder, "--set", "experiment.verify_front=true"});
+  const std::string told = said({"run", file, "--out", folder, "--set", "experiment.verify_front=trials"});
   EXPECT_THAT(told, naming("show '" + folder + "'\n", "body '" + folder + "' --individual ", "film '" + folder + "'"));
   std::istringstream lines(told.substr(told.find("speed: ")));
   for (std::string line; std::getline(lines, line) && !line.starts_with("verifying");)
@@ -275,7 +275,7 @@ TEST_F(Command, LifeSaysWhereItCannotBeSure) {
   Archive archive = Archive::create(folder_, experiment, simulator.device());
   evolve(experiment, simulator, archive, false, Observer{});
   std::map<bool, std::uint32_t> one;  // by whether its life has been recorded
-  for (std::uint32_t id = 0; id < 24; ++id) one[archive.life(id).has_value()] = id;
+  for (std::uint32_t id = 0; id < 24; ++id) one[!archive.lives(id).empty()] = id;
   ASSERT_EQ(one.size(), 2u);
   for (const auto& [is_recorded, id] : one)
     for (const Words& command : {Words{"life", folder_}, {"body", folder_, "--matured"}}) {
@@ -313,7 +313,7 @@ TEST_F(Command, ARunVerifiesItsBestAndMoreAreVerifiedAtWill) {
   run();
   const auto of_run = shown().at("best").at("verification");
   ASSERT_FALSE(of_run.is_null());
-  EXPECT_EQ(of_run.at("trials").size(), 11u) << "it develops";
+  EXPECT_EQ(of_run.at("trials").size(), 16u) << "it develops";
   const auto json = nlohmann::json::parse(said({"verify", folder_, "--best", "2", "--json"}));
   ASSERT_EQ(json.size(), 2u);
   EXPECT_EQ(json[0], of_run) << "the same every time";
@@ -420,6 +420,39 @@ slope = 5
   std::string file_ = scratch_.write("small.toml", text_);
   std::string folder_ = (scratch_ / "run").string();
 };
+
+TEST_F(Command, NamesLivesByTheirNumber) {
+  said({"run", file_, "--out", folder_, "--device", "cpu", "--set", "experiment.lives=3", "--set",
+        "experiment.birth_noise=0.01", "--set", "development.draws_between_lives=new"});
+  const Archive archive = Archive::read(folder_);
+  const std::uint32_t best = archive.best(1).at(0);
+  const ArchivedIndividual individual = archive.known_individual(best);
+  EXPECT_THAT(said({"show", folder_, "--individual", std::to_string(best)}), naming("distance by life: "));
+  const auto shown = nlohmann::json::parse(said({"show", folder_, "--individual", std::to_string(best), "--json"}));
+  ASSERT_EQ(shown.at("lives").size(), 3u);
+  std::set<std::string> edits, bodies;
+  for (const int life : {1, 2, 3}) {
+    const std::string number = std::to_string(life);
+    EXPECT_EQ(shown["lives"][life - 1]["distance"], individual.result.lives.at(life - 1).at(0));
+    const auto told = nlohmann::json::parse(said({"life", folder_, "--json", "--life", number}));
+    EXPECT_EQ(told.at("life"), life);
+    edits.insert(told.at("edits").dump());
+    bodies.insert(said({"body", folder_, "--matured", "--life", number}));
+    const auto verified = nlohmann::json::parse(said({"verify", folder_, "--best", "1", "--life", number, "--json"}));
+    EXPECT_EQ(verified[0]["fitness"], individual.result.lives[life - 1][0]);
+    EXPECT_EQ(verified[0]["trials"][0]["value"], individual.result.lives[life - 1][0]) << "again";
+  }
+  EXPECT_EQ(edits.size(), 3u);
+  EXPECT_EQ(bodies.size(), 3u);
+  EXPECT_EQ(said({"body", folder_, "--matured"}), said({"body", folder_, "--matured", "--life", "1"}));
+  EXPECT_THAT(said({"life", folder_, "--life", "2"}), naming("in life 2"));
+  EXPECT_EQ(Archive::read(folder_).verification(best)->fitness, individual.result.objectives[0])
+      << "that of the run is still there";
+  for (const Words& command :
+       {Words{"life", folder_}, Words{"body", folder_, "--matured"}, Words{"film", folder_}, Words{"verify", folder_}})
+    EXPECT_THAT(output_of(program(joined(command, {"--life", "4"})), 2), naming("--life 4", "3 lives", "1 to 3"));
+  EXPECT_THAT(output_of(program({"body", folder_, "--life", "2"}), 2), naming("--life", "--matured"));
+}
 
 TEST_F(ScenarioRun, KeepsShowsAndVerifiesTheScoresOfEveryTest) {
   said({"run", file_, "--out", folder_, "--device", "cpu", "--set", "fitness.0.over=worst"});

@@ -89,6 +89,7 @@ slope = -30
 [[scenario]]
 name = "uphill again"
 repeat = 2
+start_noise = 0.01
 [scenario.gravity]
 slope = -30
 [[scenario]]

@@ -192,7 +192,7 @@ TEST(Verbosity, QuietPrintsResultsAloneAndVerboseSaysWhatTakesHowLong) {
     return lines_of(program({"run", file, "--out", (scratch / option).string(), option}));
   };
   const Words quiet = run("--quiet");
-  ASSERT_EQ(quiet.size(), 2u + 11u) << "the best, its verification and its trials";
+  ASSERT_EQ(quiet.size(), 2u + 16u) << "the best, its verification and its trials";
   EXPECT_THAT(quiet[0], naming("best: individual ", (scratch / "--quiet").string()));
   EXPECT_THAT(quiet[1], ::testing::StartsWith("individual "));
   const Words verbose = run("--verbose");

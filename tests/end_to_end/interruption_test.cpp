@@ -95,7 +95,7 @@ std::int64_t refused_elders(const Archive& archive) {
 /// With this selection all parents die, so that elders come to the front whom nobody has verified yet.
 TEST_F(Interruption, ARunThatVerifiesItsFrontIsTheSameAfterKillsAndWithAnyThreads) {
   const auto verifying = [&](const std::string& folder, const std::string& threads) {
-    const Words values{"selection.name=comma", "experiment.verify_front=true", "development.draws=individual"};
+    const Words values{"selection.name=comma", "experiment.verify_front=trials", "development.draws=individual"};
     return run_command(folder, joined(setting(values), {"--threads", threads}), "1");
   };
   output_of(verifying("straight", "1"));
@@ -107,6 +107,26 @@ TEST_F(Interruption, ARunThatVerifiesItsFrontIsTheSameAfterKillsAndWithAnyThread
   const Archive straight = Archive::read(path("straight"));
   EXPECT_GT(straight.statuses().at("artefact") + straight.statuses().at("passive"), 10);
   EXPECT_GT(refused_elders(straight), 0);
+  expect_same("straight", "three threads");
+  expect_same("straight", "killed");
+}
+
+TEST_F(Interruption, ARunOfSeveralLivesIsTheSameAfterKillsAndWithAnyThreads) {
+  const auto living = [&](const std::string& folder, const std::string& threads) {
+    const Words values{"experiment.lives=3", "experiment.birth_noise=0.01", "development.draws_between_lives=new",
+                       "selection.remeasure=2", "experiment.verify_front=lives"};
+    return run_command(folder, joined(setting(values), {"--threads", threads}), "1");
+  };
+  output_of(living("straight", "1"));
+  output_of(living("three threads", "3"));
+  kill_after(3, living("killed", "2"));
+  for (int kill = 1; kill < 4; ++kill) kill_after(3, resume_command("killed"));
+  expect_interrupted("killed");
+  output_of(resume_command("killed"));
+  std::size_t lives = 0;
+  for (const Individual& one : Archive::read(path("straight")).population())
+    lives = std::max(lives, one.result.lives.size());
+  EXPECT_GE(lives, 6u) << "some have been measured again";
   expect_same("straight", "three threads");
   expect_same("straight", "killed");
 }

@@ -70,6 +70,11 @@ TEST_F(Ranks, MakeTheSameRunAsOneProcessAndSayWhatEachOfThemHasDone) {
     expect_equal("alone", folder);
   }
   EXPECT_THAT(output, naming("rank 0 on ", "rank 1 on ", "rank 2 on "));
+  const Words lives{"experiment.lives=3", "experiment.birth_noise=0.01", "selection.remeasure=2",
+                    "experiment.verify_front=lives"};
+  output_of(run_command("three lives", lives));
+  output_of(started(2, run_command("three lives of two ranks", lives)));
+  expect_equal("three lives", "three lives of two ranks");
 }
 
 TEST_F(Ranks, MakeTheSameRunWithEachOperatorOfAnExperiment) {

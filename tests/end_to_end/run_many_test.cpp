@@ -57,7 +57,7 @@ class RunMany : public ::testing::Test {
 };
 
 TEST_F(RunMany, RunsAreTheSameAsAloneWithTheThreadsThatTheyAskFor) {
-  const Words verifying{"--set", "experiment.verify_front=true", "--set", "selection.name=comma"};
+  const Words verifying{"--set", "experiment.verify_front=trials", "--set", "selection.name=comma"};
   std::vector<Words> runs{arguments("set", {"--device", "cpu", "--set", "simulation.threads=3"}),
                           arguments("given", {"--device", "cpu", "--threads", "3"})};
   for (const std::string seed : {"1", "2", "3"}) {

@@ -59,7 +59,10 @@ void give_to(const Read& read) {
 
 void read_individual(const Archive& archive, std::uint32_t id) {
   give_to([&] {
-    if (const auto life = archive.life(id)) check_life(archive, small_run().experiment(), id, *life);
+    const ArchivedIndividual individual = archive.known_individual(id);
+    Newborn newborn = newborn_of(individual);
+    newborn.records = archive.lives(id);
+    check_lives(archive, small_run().experiment(), newborn);
   });
   give_to([&] {
     const ArchivedIndividual individual = archive.known_individual(id);

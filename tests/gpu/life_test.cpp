@@ -5,7 +5,7 @@
 #include "evolution/breeding.hpp"
 #include "gpu.hpp"
 #include "life/evaluation.hpp"
-#include "life/verification.hpp"
+#include "life/verification/verification.hpp"
 #include "support/pairs.hpp"
 #include "support/told.hpp"
 
@@ -50,6 +50,35 @@ TEST_P(ContactRecord, AgreesWithTheCpu) {
     }
   }
   EXPECT_GT(most, 0.9) << "some masses rest on the ground";
+}
+
+TEST(Lives, ScoreTheSameInAnyBatch) {
+  EVODEVO_NEEDS_GPU();
+  const Experiment experiment =
+      testing::small({"experiment.lives=3", "experiment.birth_noise=0.01", "development.draws_between_lives=new",
+                      "scenario=[{name='hurt', damage=0.2, start_noise=0.01, repeat=2}]"});
+  const std::vector<Individual> robots = breed(experiment, {}, 0, 0, 30);
+  const auto simulator = make_cuda_simulator(experiment.scene, experiment.stepping);
+  const Evaluation evaluation(experiment, *simulator);
+  const auto lives_of = [&](std::uint32_t first, std::uint32_t count) {
+    std::vector<Newborn> newborns;
+    for (const Individual& robot : robots)
+      newborns.push_back({.id = robot.id, .genome = &robot.genome, .life = first, .lives = count});
+    return newborns;
+  };
+  const std::vector<Newborn> all = lives_of(1, 3), last = lives_of(3, 1);
+  const std::vector<Result> together = evaluation.evaluate(all, [](double) {});
+  std::size_t ok = 0;
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    const Result alone = evaluation.evaluate({&all[i], 1}, [](double) {}).front();
+    EXPECT_EQ(alone.status, together[i].status) << i;
+    EXPECT_EQ(alone.lives, together[i].lives) << i;
+    EXPECT_EQ(alone.records, together[i].records) << i;
+    if (together[i].status != Status::ok) continue;
+    EXPECT_EQ(evaluation.evaluate({&last[i], 1}, [](double) {}).front().objectives, together[i].lives.back()) << i;
+    ++ok;
+  }
+  EXPECT_GT(ok, 10u);
 }
 
 TEST(Verification, FindsTheSameOnBothDevices) {

@@ -52,7 +52,8 @@ TEST_F(ArchiveTest, GivesBackWhatWasCommitted) {
                       .parents = {1, 3},
                       .made_by = "two-point",
                       .genome = {0.25f, 3},
-                      .result = {.objectives = {0.1 + 0.2, -1e-300}, .spring_evaluations = 12345678901}};
+                      .result = {.objectives = {0.1 + 0.2, -1e-300}, .spring_evaluations = 12345678901},
+                      .measured = 2};
   Individual diverged = ok;
   diverged.id = 5;
   diverged.parents = {};
@@ -61,8 +62,8 @@ TEST_F(ArchiveTest, GivesBackWhatWasCommitted) {
   {
     Archive archive = created();
     for (std::uint32_t generation = 0; generation < 2; ++generation)
-      archive.commit({}, {}, {}, {.generation = generation, .evaluations = 2 + generation});
-    archive.commit({ok, diverged}, {5}, {}, summary);
+      archive.commit({.summary = {.generation = generation, .evaluations = 2 + generation}});
+    archive.commit({.newborns = {ok, diverged}, .dropped = {5}, .summary = summary});
   }
   const Archive archive = Archive::read(folder_);
   EXPECT_EQ(archive.record("seed"), "7");
@@ -90,17 +91,24 @@ TEST_F(ArchiveTest, GivesBackWhatWasCommitted) {
 
 TEST_F(ArchiveTest, TheRefusedLoseTheirScoresWhenTheirGenerationIsCommitted) {
   const Individual elder{.made_by = "random", .genome = {0.25f, 3}, .result = {.objectives = {0.4, 1}}};
-  const Individual newborn{
-      .id = 1, .born = 1, .origin = 1, .made_by = "random", .genome = {0.25f, 3}, .result = {.objectives = {0.3, 2}}};
+  const Individual newborn{.id = 1,
+                           .born = 1,
+                           .origin = 1,
+                           .made_by = "random",
+                           .genome = {0.25f, 3},
+                           .result = {.objectives = {0.3, 2}},
+                           .measured = 1};
   const std::vector<Refusal> refusals{{1, Status::artefact, "quarter-step ends as diverged"},
                                       {0, Status::passive, "no-muscles gives 0.39"}};
   const Verification of_elder{0, 0.4, {{"again", Status::ok, "", 0.4}}};
   {
     Archive archive = created();
-    archive.commit({elder}, {}, {}, {.generation = 0, .evaluations = 1});
+    archive.commit({.newborns = {elder}, .summary = {.generation = 0, .evaluations = 1}});
     Archive::annotate(folder_).add_verifications({of_elder});
     EXPECT_TRUE(archive.verification(0).has_value());
-    archive.commit({newborn}, {}, {}, {.generation = 1, .evaluations = 2, .artefact = 1, .passive = 1}, {}, refusals);
+    archive.commit({.newborns = {newborn},
+                    .summary = {.generation = 1, .evaluations = 2, .artefact = 1, .passive = 1},
+                    .refusals = refusals});
     Archive::annotate(folder_).add_verifications({of_elder});  // of a process that chose it before
   }
   const Archive archive = Archive::read(folder_);
@@ -124,7 +132,7 @@ FinishedGeneration large_generation(std::uint32_t generation) {
   for (std::uint32_t i = 0; i < size; ++i) {
     Individual& one = large.newborns.emplace_back();
     one.id = generation * size + i;
-    one.born = one.origin = generation;
+    one.born = one.origin = one.measured = generation;
     one.genome = {static_cast<float>(i), 1};
     one.result.objectives = {static_cast<double>(one.id), 1};
   }

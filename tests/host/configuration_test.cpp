@@ -392,7 +392,7 @@ TEST(Configuration, Overrides) {
   EXPECT_THAT(
       refused("experiment.size", "3"),
       at_place("--set experiment.size=3: experiment.size: ", "[experiment]",
-               "seed, evaluations, spring_evaluations, hours, population, children, random_individuals, verify"));
+               "seed, evaluations, spring_evaluations, hours, population, children, random_individuals, lives"));
   EXPECT_THAT(refused("fitness.7.window", "3"), at_place("--set fitness.7.window=3: fitness.7.window: ", "item 7"));
   EXPECT_THAT(refused("fitness.0", "3"), at_place("test.toml:37:1: fitness = a list with tables: ", "[[fitness]]"));
 }

@@ -262,7 +262,7 @@ TEST(Control, NoChangeTakesTheSameTimeAndSprings) {
   EXPECT_NEAR(still.living.state.time, 0.1, 1e-12);
   EXPECT_EQ(still.result.spring_evaluations, 50u * 200) << "springs times steps";
   EXPECT_EQ(developed.result.spring_evaluations, 50u * 200);
-  EXPECT_TRUE(still.result.record.empty());
+  EXPECT_TRUE(still.record.empty());
   EXPECT_NE(still.living.state.position, developed.living.state.position);
 }
 
@@ -353,9 +353,9 @@ TEST(Control, RandomPlacesChangeAsMuchInEachCycleAsTheOperatorsDo) {
     const Life &one = developed.lives[i], &other = moved.lives[i];
     if (!one.alive() || !other.alive()) continue;
     SCOPED_TRACE(i);
-    const auto expected = totals(developed.born[i], one.result.record);
-    EXPECT_EQ(totals(moved.born[i], other.result.record), expected);
-    EXPECT_FALSE(other.result.record == one.result.record);
+    const auto expected = totals(developed.born[i], one.record);
+    EXPECT_EQ(totals(moved.born[i], other.record), expected);
+    EXPECT_FALSE(other.record == one.record);
     for (const auto& [cycle, counts] : expected) {
       springs_gone += counts[0];
       masses_gone += counts[2];
@@ -395,8 +395,8 @@ TEST(Control, NothingMoreChangesAfterTheYokesEnd) {
   evaluation.development.run(lives, testing::unwatched);
   EXPECT_EQ(lives[0].result.status, Status::ok);
   EXPECT_EQ(lives[0].living.body.springs.size(), 49u);
-  ASSERT_EQ(lives[0].result.record.changes().size(), 1u);
-  EXPECT_EQ(lives[0].result.record.changes()[0].cycle, 1u);
+  ASSERT_EQ(lives[0].record.changes().size(), 1u);
+  EXPECT_EQ(lives[0].record.changes()[0].cycle, 1u);
 }
 
 // schedules ----------------------------------------------------------------------------------------------------------

@@ -365,8 +365,8 @@ TEST(DevoMemory, AloneIsNoChangeOfTheBodyAndALifeFromItsRecordCallsNobody) {
   const Experiment experiment = with({told});
   const Life life = matured(experiment);
   EXPECT_THAT(seen, ElementsAre(ElementsAre(0, 0), ElementsAre(1, 1)));
-  EXPECT_TRUE(life.result.record.empty());
-  matured(experiment, life.result.record);
+  EXPECT_TRUE(life.record.empty());
+  matured(experiment, {life.record});
   EXPECT_THAT(seen, ::testing::SizeIs(2));
 }
 
@@ -467,7 +467,7 @@ TEST(DevoMemory, LivesDoNotDependOnThreadsOrCompany) {
   const Experiment experiment =
       with({accountant()}, {{"development.cycles", "4", ""}, {"encoding.size", "[2, 2, 2]", ""}});
   const std::vector<Result> results = testing::expect_independent_lives(experiment, breed(experiment, {}, 0, 0, 8));
-  EXPECT_GT(std::ranges::count_if(results, [](const Result& result) { return !result.record.empty(); }), 3);
+  EXPECT_GT(std::ranges::count_if(results, [](const Result& result) { return !result.records.at(0).empty(); }), 3);
 }
 
 }  // namespace

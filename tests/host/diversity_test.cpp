@@ -30,15 +30,17 @@ class Diversity : public ::testing::Test {
   void add(std::vector<double> objectives, std::vector<double> measures) {
     Individual& one = newborns_.emplace_back();
     one.id = next_++;
-    one.born = one.origin = generation_;
+    one.born = one.origin = one.measured = generation_;
     one.genome = Genome(experiment_.layout.first_size(), 0);
     if (objectives.empty()) one.result = {Status::invalid, "no springs", 0, {}, 0};
     one.result.objectives = std::move(objectives);
     one.result.measures = std::move(measures);
   }
   void commit(const std::vector<std::uint32_t>& dropped, const std::vector<NoteOf>& notes = {}) {
-    archive().commit(newborns_, dropped, {}, {.generation = generation_++, .evaluations = next_},
-                     {.memory = {}, .notes = notes});
+    archive().commit({.newborns = newborns_,
+                      .dropped = dropped,
+                      .summary = {.generation = generation_++, .evaluations = next_},
+                      .remembered = {.memory = {}, .notes = notes}});
     newborns_.clear();
   }
   Archive& archive() {
@@ -156,7 +158,8 @@ TEST_F(Noted, NotesHoldUntilAnotherIsMadeOrTheIndividualDies) {
 TEST_F(Noted, NotesOfGenerationsThatTheRunDoesNotHaveAreRefused) {
   add({1, 0}, {});
   commit({}, {{0, 0, 7}});
-  archive().commit({}, {}, {}, {.generation = 1, .evaluations = 1}, {.memory = {}, .notes = {{0, 0, 8}}});
+  archive().commit(
+      {.summary = {.generation = 1, .evaluations = 1}, .remembered = {.memory = {}, .notes = {{0, 0, 8}}}});
   alter("UPDATE notes SET generation = 5 WHERE generation = 1");
   EXPECT_THAT([&] { (void)archive().note_histories(); },
               ::testing::ThrowsMessage<ArchiveError>(testing::naming("notes.generation", "5")));

@@ -155,13 +155,13 @@ TEST(InheritedDraws, LetEqualGenomesDevelopAlikeWhateverDraws) {
     };
     const std::vector<Life> same = lives("inherited", "7"), others = lives("inherited", "8"),
                             own = lives("individual", "7");
-    EXPECT_FALSE(same[0].result.record.empty()) << "there must be something to compare";
-    EXPECT_TRUE(same[0].result.record == same[1].result.record);
+    EXPECT_FALSE(same[0].record.empty()) << "there must be something to compare";
+    EXPECT_TRUE(same[0].record == same[1].record);
     EXPECT_EQ(same[0].living.state.position, same[1].living.state.position);
     EXPECT_EQ(same[0].living.numbers.identities(), same[1].living.numbers.identities());
     if (what.find("adaptation") != what.npos) continue;  // draws only where stresses are equal
-    EXPECT_FALSE(same[0].result.record == others[0].result.record) << "another seed, other numbers";
-    EXPECT_FALSE(own[0].result.record == own[1].result.record) << "each has its own";
+    EXPECT_FALSE(same[0].record == others[0].record) << "another seed, other numbers";
+    EXPECT_FALSE(own[0].record == own[1].record) << "each has its own";
   }
 }
 
@@ -181,7 +181,7 @@ TEST(InheritedDraws, AreThoseOfTheLabelSoThatAnotherOperatorBeforeChangesNothing
     std::map<std::string, double> numbers;
     for (const std::string& name : names) {
       Experiment experiment = small();
-      numbers[name] = draws_for(experiment, {}, name, 1).number("x");
+      numbers[name] = draws_of_development(experiment, {}, name, 1).number("x");
     }
     return numbers;
   };

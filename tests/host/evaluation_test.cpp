@@ -241,7 +241,7 @@ TEST(Evaluation, ABodysLengthIsThatOfTheStartOfTheWindow) {
 /// The cycles in which the body changed.
 std::set<std::uint32_t> cycles_of_change(const Life& life) {
   std::set<std::uint32_t> cycles;
-  for (const Change& change : LifeRecord(life.result.record.bytes()).changes()) cycles.insert(change.cycle);
+  for (const Change& change : LifeRecord(life.record.bytes()).changes()) cycles.insert(change.cycle);
   return cycles;
 }
 

@@ -44,7 +44,7 @@ TEST(Filming, ChangesNoResult) {
       EXPECT_EQ(filmed[i].result.status, plain[i].status);
       EXPECT_EQ(filmed[i].result.spring_evaluations, plain[i].spring_evaluations);
       EXPECT_EQ(filmed[i].result.objectives, plain[i].objectives);
-      EXPECT_EQ(filmed[i].result.record, plain[i].record);
+      EXPECT_EQ(filmed[i].result.records, plain[i].records);
     }
   }
 }

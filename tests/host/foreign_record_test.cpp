@@ -38,7 +38,7 @@ class ForeignRecord : public ::testing::Test {
            Observer{.generation_done = [&](const Summary& summary) { stop = summary.generation == 1; }});
     archive.add_verifications({{archive.best(1).front(), 0.3, {{"again", Status::ok, "", 0.3}}}});
     for (const std::uint32_t id : archive.best(12))
-      if (archive.life(id) && !archive.life(id)->empty()) recorded_ = id;
+      if (const auto lives = archive.lives(id); !lives.empty() && !lives[0].empty()) recorded_ = id;
   }
 
   /// Returns the message with which a command refuses the run, or an empty text if the command succeeds. If the command
@@ -114,7 +114,7 @@ TEST_F(ForeignRecord, AnUntouchedOneIsTaken) {
   renew();
   EXPECT_EQ(refusals(), 0);
   EXPECT_EQ(Archive::read(folder_).generations().size(), 3u) << "resumed";
-  EXPECT_FALSE(Archive::read(folder_).life(recorded_)->empty());
+  EXPECT_FALSE(Archive::read(folder_).lives(recorded_).at(0).empty());
 }
 
 class ForeignTable : public ForeignRecord, public ::testing::WithParamInterface<const char*> {};
@@ -206,7 +206,7 @@ std::string damaged(std::string bytes, unsigned changes, bool is_cut, std::mt199
 }
 
 TEST_F(ForeignRecord, RecordsOfLivesMayHoldAnyBytes) {
-  const std::string bytes = Archive::read(original_).life(recorded_)->bytes();
+  const std::string bytes = Archive::read(original_).lives(recorded_).at(0).bytes();
   std::mt19937 random(5);
   int taken = 0, refused = 0;
   for (int i = 0; i < 150; ++i) {

@@ -91,11 +91,11 @@ TEST_F(Pairs, NobodyIsVerifiedWhoComesFromAnotherDeviceOrWithoutTheKey) {
   add(exaggerated(2.6));
   const RecordedProvenances elsewhere({1});
   EXPECT_TRUE(FrontVerification(experiment_, evaluator_, elsewhere).refuse(everyone_, 1).empty());
-  experiment_.verify_front = false;
+  experiment_.verify_front = VerifyFront::off;
   EXPECT_TRUE(verification_.refuse(everyone_, 0).empty());
   EXPECT_EQ(status(0), Status::ok);
   EXPECT_EQ(verification_.seconds(), 0);
-  experiment_.verify_front = true;
+  experiment_.verify_front = VerifyFront::trials;
   EXPECT_EQ(verification_.refuse(everyone_, 1).size(), 1u) << "older individuals are verified, too";
 }
 
@@ -117,7 +117,7 @@ TEST(LivesAtOnce, AreThoseThatADeviceStillHasRoomFor) {
 }
 
 TEST(VerifiedRun, HasNobodyOnTheFrontWhoIsMarked) {
-  const testing::FinishedRun run(testing::small({"experiment.verify_front=true", "experiment.evaluations=60"}));
+  const testing::FinishedRun run(testing::small({"experiment.verify_front=trials", "experiment.evaluations=60"}));
   const auto expect_unmarked = [&](const Individual& one) {
     const Champion champion{{one.id, one.born, &one.genome}, one.result.objectives.at(0)};
     EXPECT_THAT(marks(verify(run.experiment, *run.simulator, {&champion, 1}).front(), true), ::testing::IsEmpty())
@@ -136,7 +136,7 @@ TEST(VerifiedRun, HasNobodyOnTheFrontWhoIsMarked) {
 }
 
 TEST(VerifiedRun, CountsTheRefusedAndKeepsTheirReasons) {
-  const testing::FinishedRun run(testing::small({"experiment.verify_front=true", "experiment.evaluations=60",
+  const testing::FinishedRun run(testing::small({"experiment.verify_front=trials", "experiment.evaluations=60",
                                                  "materials.bone.stiffness=3e5", "simulation.unstable=run"}));
   const Archive& archive = run.archive;
   std::map<Status, std::int64_t> counted, told;
@@ -184,8 +184,8 @@ TEST(VerifiedRun, NewbornsAndEldersWhoAreRefusedRankBelowAllWithAFitness) {
     EXPECT_TRUE(refused_kept == 0 || ok_dropped == 0) << summary.generation;
   };
   for (std::size_t done = 0; !is_finished(experiment, archive.generations()); ++done) {
-    experiment.verify_front = done > 3;
-    EXPECT_TRUE(experiment.verify_front || refused.empty());
+    experiment.verify_front = done > 3 ? VerifyFront::trials : VerifyFront::off;
+    EXPECT_TRUE(done > 3 || refused.empty());
     testing::evolve_to(done + 1, experiment, archive, 2);
     follow();
   }
@@ -203,11 +203,11 @@ TEST(VerifyFront, IsRefusedIfTheFirstObjectiveIsMeasuredWithinTheLifeOrMinimised
                                            {"seed = 7", "seed = 7\nverify_front = " + verify_front}}),
                       {"test.toml", {}, {std::filesystem::path(EVODEVO_FAULTY_PLUGINS) / "special"}});
     };
-    EXPECT_NO_THROW(check("false", "[[fitness]]"));
-    EXPECT_NO_THROW(check("true", "[selection]"));
+    EXPECT_NO_THROW(check("'off'", "[[fitness]]"));
+    EXPECT_NO_THROW(check("'trials'", "[selection]"));
     const auto is_refused =
-        ::testing::ThrowsMessage<ConfigError>(testing::at_place("test.toml:", name, "verify_front = true", "remove"));
-    EXPECT_THAT([&] { check("true", "[[fitness]]"); }, is_refused);
+        ::testing::ThrowsMessage<ConfigError>(testing::at_place("test.toml:", name, "verify_front", "remove"));
+    EXPECT_THAT([&] { check("'trials'", "[[fitness]]"); }, is_refused);
   }
 }
 

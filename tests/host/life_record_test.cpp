@@ -71,7 +71,7 @@ TEST(LifeRecord, ReplayedFromTheBodyAtBirthGivesTheMaturedOneToTheBit) {
       if (!life.alive()) continue;
       ++alive;
       Body& body = developed.born[i];
-      for (const Change& change : LifeRecord(life.result.record.bytes()).changes()) {
+      for (const Change& change : LifeRecord(life.record.bytes()).changes()) {
         apply(change.edits, body);
         removed_masses += change.edits.removed_masses.size();
         new_masses += change.edits.new_masses.size();
@@ -146,7 +146,7 @@ TEST(LifeRecord, ASpringThatGoesAndOneThatComesTakeSome20BytesAndATurnOfGrowthSo
       small({"encoding.size=[4, 4, 4]", "development.cycles=8", "development.operator.0.springs=50"});
   for (const Life& life : Developed(turnover, 2).lives) {
     ASSERT_TRUE(life.alive());
-    EXPECT_LT(life.result.record.bytes().size(), 8 * 50 * 22u + 1000) << "and a few materials";
+    EXPECT_LT(life.record.bytes().size(), 8 * 50 * 22u + 1000) << "and a few materials";
   }
   const Experiment growth =
       small({"encoding.size=[4, 4, 4]", "encoding.size_range=0.25", "development.operator.0={name='ballistic-growth'}",
@@ -154,8 +154,8 @@ TEST(LifeRecord, ASpringThatGoesAndOneThatComesTakeSome20BytesAndATurnOfGrowthSo
   for (const Life& life : Developed(growth, 2).lives) {
     ASSERT_TRUE(life.alive());
     ASSERT_GT(life.living.body.springs.size(), 100u);
-    EXPECT_EQ(life.result.record.changes().size(), 100u);
-    EXPECT_LE(life.result.record.bytes().size(), 100 * 34u);
+    EXPECT_EQ(life.record.changes().size(), 100u);
+    EXPECT_LE(life.record.bytes().size(), 100 * 34u);
   }
 }
 
@@ -182,7 +182,7 @@ TEST(LifeRecord, WhatComesAboutAtRandomPlacesHasNoCause) {
   const auto causes_named = [&] {
     std::size_t count = 0;
     for (const Life& life : Developed(experiment, 6).lives)
-      for (const Change& change : life.result.record.changes())
+      for (const Change& change : life.record.changes())
         for (const auto list : Causes::lists) count += (change.edits.causes.*list).size();
     return count;
   };
@@ -196,7 +196,7 @@ void expect_same_life(const Life& a, const Life& b) {
   EXPECT_EQ(a.living.state.position, b.living.state.position);
   EXPECT_EQ(a.living.state.velocity, b.living.state.velocity);
   EXPECT_EQ(a.living.state.start_energy, b.living.state.start_energy) << "the guard is to allow the same, to the bit";
-  EXPECT_EQ(a.result.record, b.result.record);
+  EXPECT_EQ(a.record, b.record);
 }
 
 TEST(LifeRecord, ALifeLivedAgainIsAllowedTheEnergyThatItHadThen) {
@@ -211,7 +211,7 @@ TEST(LifeRecord, ALifeLivedAgainIsAllowedTheEnergyThatItHadThen) {
     };
     const Experiment experiment = with({Told({}, exchange)});
     const Life life = matured(experiment);
-    expect_same_life(matured(experiment, LifeRecord(life.result.record.bytes())), life);
+    expect_same_life(matured(experiment, {LifeRecord(life.record.bytes())}), life);
     energies.push_back(life.living.state.start_energy);
   }
   EXPECT_GT(energies[1], energies[0]) << "what an operator strains is allowed";
@@ -231,14 +231,14 @@ TEST(LifeRecord, LivesFollowTheirsWhateverTheOperatorsWouldDoAndThoseWithoutOneG
     const std::vector<Life> recorded = Developed(experiment, newborns).lives;
     experiment.development.seed += 1;  // development draws other numbers
     const std::vector<Life> free = Developed(experiment, newborns).lives;
-    for (const std::size_t i : {1, 3, 5}) newborns[i].record = recorded[i].result.record;
+    for (const std::size_t i : {1, 3, 5}) newborns[i].records = {recorded[i].record};
     const std::vector<Life> mixed = Developed(experiment, newborns).lives;
     std::size_t alive[2] = {};  // without and with a record
     for (std::size_t i = 0; i < individuals.size(); ++i) {
       SCOPED_TRACE(i);
       if (!recorded[i].alive() || !free[i].alive()) continue;
       ++alive[i % 2];
-      EXPECT_FALSE(free[i].result.record == recorded[i].result.record);
+      EXPECT_FALSE(free[i].record == recorded[i].record);
       expect_same_life(mixed[i], i % 2 == 1 ? recorded[i] : free[i]);
     }
     EXPECT_GT(std::min(alive[0], alive[1]), 0u);
@@ -309,14 +309,14 @@ TEST(LifeRecord, ARunKeepsThoseOfTheFrontAloneAlsoOfThoseWhoReachItLater) {
     int kept = 0, late = 0;
     for (const ArchivedIndividual& one : all) {
       SCOPED_TRACE(one.id);
-      const std::optional<LifeRecord> record = run.archive.life(one.id);
-      EXPECT_EQ(record.has_value(), ever_on_front(one, all, one.born, 10));
-      if (!record) continue;
+      const std::vector<LifeRecord> records = run.archive.lives(one.id);
+      EXPECT_EQ(records.size(), ever_on_front(one, all, one.born, 10) ? 1u : 0u);
+      if (records.empty()) continue;
       ++kept;
       late += !on_front(one, all, one.born, false);
-      EXPECT_EQ(record->changes().size(), 2u) << "two cycles";
+      EXPECT_EQ(records[0].changes().size(), 2u) << "two cycles";
       const std::vector<Newborn> again{{one.id, one.born, &one.genome}};
-      EXPECT_EQ(*record, Developed(run.experiment, again).lives.front().result.record);
+      EXPECT_EQ(records[0], Developed(run.experiment, again).lives.front().record);
     }
     EXPECT_GT(levelling ? late : kept, 3);
     EXPECT_TRUE(levelling || kept < 57) << kept;
@@ -353,7 +353,7 @@ class GoneOn : public ::testing::Test {
     for (const ArchivedIndividual& one : all) {
       const bool in_first = ever_on_front(one, all, 0, first_half), in_second = ever_on_front(one, all, first_half, 10);
       const bool recorded = one.born < first_half ? in_first : in_second;
-      EXPECT_EQ(archive.life(one.id).has_value(), recorded) << "individual " << one.id;
+      EXPECT_EQ(!archive.lives(one.id).empty(), recorded) << "individual " << one.id;
       without_record += in_second && !recorded;
       late += recorded && !on_front(one, all, one.born, false);
     }
@@ -382,7 +382,7 @@ TEST_F(GoneOn, OnAnotherDeviceWarnsByTheGenerationOfBirthAndNamesUpToSix) {
     everyone.push_back(&one);
     const std::string here = warning(archive, experiment_, one, "here");
     const std::string there = warning(archive, experiment_, one, "there");
-    const bool of_first = one.born < first_half, recorded = archive.life(one.id).has_value();
+    const bool of_first = one.born < first_half, recorded = !archive.lives(one.id).empty();
     EXPECT_EQ(here.empty(), of_first || recorded) << "individual " << one.id;
     EXPECT_EQ(there.empty(), !of_first || recorded) << "individual " << one.id;
     warned_here += !here.empty();
@@ -411,7 +411,8 @@ TEST_F(GoneOn, WithAnotherOperatorWarnsToo) {
   const std::vector<ArchivedIndividual> all = evolved_by_two(second, "here");
   expect_no_other_life_recorded(all);
   const Archive archive = Archive::read(folder_);
-  const auto unrecorded = std::find_if(all.begin(), all.end(), [&](const auto& one) { return !archive.life(one.id); });
+  const auto unrecorded =
+      std::find_if(all.begin(), all.end(), [&](const auto& one) { return archive.lives(one.id).empty(); });
   ASSERT_NE(unrecorded, all.end());
   ASSERT_LT(unrecorded->born, first_half);
   EXPECT_EQ(warning(archive, experiment_, *unrecorded, "here"), "") << "by those that made it";

@@ -316,7 +316,7 @@ TEST(Materials, OfALifeAreThoseOfItsSpringsAndOfTheExperimentEachOnce) {
     expect_no_others(born[i]);
     expect_no_others(lives[i].living.body);
     EXPECT_GT(lives[i].living.body.materials.size(), born[i].materials.size());
-    for (const Change& change : lives[i].result.record.changes()) apply(change.edits, born[i]);
+    for (const Change& change : lives[i].record.changes()) apply(change.edits, born[i]);
     EXPECT_EQ(born[i].materials, lives[i].living.body.materials);
     EXPECT_EQ(made_of(born[i]), made_of(lives[i].living.body));
   }

@@ -386,7 +386,7 @@ TEST(Report, FilmsFollowWhatARunHasRecorded) {
     std::vector<std::string> texts;
     const auto run = reported_run(archive, recorded_experiment(archive), *finished.simulator, {}, page_budget);
     for (const auto& robot : run["robots"])
-      if (archive.life(robot["individual"].get<std::uint32_t>())) texts.push_back(robot["film"].dump());
+      if (!archive.lives(robot["individual"].get<std::uint32_t>()).empty()) texts.push_back(robot["film"].dump());
     return texts;
   };
   const std::vector<std::string> before = films();
@@ -394,6 +394,28 @@ TEST(Report, FilmsFollowWhatARunHasRecorded) {
   std::string other = archive.record("experiment");
   archive.set_record("experiment", other.replace(other.find("seed = 7"), 8, "seed = 8"));
   EXPECT_EQ(films(), before) << "though development draws other numbers now";
+}
+
+TEST(Report, ShowsEachLifeOfTheBestAndOfElitesTheFirst) {
+  const testing::FinishedRun run(
+      testing::small({"experiment.lives=3", "experiment.birth_noise=0.02", "development.draws_between_lives=new",
+                      "fitness.1={name='descriptor', settle=0.05, window=0.1}"}));
+  const auto shown = [&](const Cast& cast) {
+    return reported_run(run.archive, run.experiment, *run.simulator, cast, page_budget)["robots"];
+  };
+  std::map<std::uint32_t, std::vector<int>> lives;
+  for (const auto& robot : shown({.best = 2, .ancestors = 0})) {
+    const int life = robot["life"].get<int>();
+    lives[robot["individual"].get<std::uint32_t>()].push_back(life);
+    ASSERT_EQ(robot["lives"].size(), 3u);
+    EXPECT_EQ(robot["again"][0], robot["lives"][life - 1]["distance"]) << "the film shows this life";
+  }
+  for (const std::uint32_t id : run.archive.best(2)) EXPECT_THAT(lives[id], ::testing::ElementsAre(1, 2, 3));
+  const auto second = shown({.best = 1, .ancestors = 0, .life = 2});
+  ASSERT_EQ(second.size(), 1u);
+  EXPECT_EQ(second[0]["life"], 2);
+  for (const auto& elite : shown({.best = 0, .best_of_others = 0, .ancestors = 0, .elites = 9}))
+    EXPECT_EQ(elite["life"], 1);
 }
 
 /// The filmed speed of the best robot is that which its distances along x and y make.
@@ -519,9 +541,9 @@ TEST_F(RunJson, AReportShowsTheLineOfTheBestFromItsFounder) {
   for (std::uint32_t generation = archive_.generations().back().generation + 1; line.size() < 4; ++generation) {
     child.parents = {child.id};
     child.id = 24 + static_cast<std::uint32_t>(line.size());
-    child.born = generation;
+    child.born = child.measured = generation;
     child.result.objectives[0] += 1;  // better than all before
-    archive_.commit({child}, {}, {}, {.generation = generation, .evaluations = child.id + 1});
+    archive_.commit({.newborns = {child}, .summary = {.generation = generation, .evaluations = child.id + 1}});
     line.push_back(child.id);
   }
   const auto shown = [&](std::size_t ancestors) {

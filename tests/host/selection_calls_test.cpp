@@ -34,7 +34,8 @@ Individual scored(std::uint32_t id, std::uint32_t origin, std::vector<double> ob
   return individual;
 }
 
-const std::string scenarios = "[[scenario]]\nname = \"flat\"\n[[scenario]]\nname = \"noisy\"\nrepeat = 2\n";
+const std::string scenarios =
+    "[[scenario]]\nname = \"flat\"\n[[scenario]]\nname = \"noisy\"\nrepeat = 2\nstart_noise = 0.01\n";
 
 TEST(SelectionTable, TurnsScoresAndCountsAges) {
   const Experiment experiment = testing::read(testing::small_experiment);
@@ -72,9 +73,9 @@ TEST(SelectionTable, ShowsTheScoresOfEveryTest) {
   EXPECT_EQ(experiment.cases[3].objective, 1u);
   std::vector<Individual> everyone = {scored(0, 0, {2, 5}), scored(1, 0, {})};
   for (const std::size_t objective : {0, 1}) {
-    everyone[0].result.tests.push_back({0, 0, objective, 10.0 + double(objective)});
-    everyone[0].result.tests.push_back({1, 0, objective, 20.0 + double(objective)});
-    everyone[0].result.tests.push_back({1, 1, objective, 30.0 + double(objective)});
+    everyone[0].result.tests.push_back({1, 0, 0, objective, 10.0 + double(objective)});
+    everyone[0].result.tests.push_back({1, 1, 0, objective, 20.0 + double(objective)});
+    everyone[0].result.tests.push_back({1, 1, 1, objective, 30.0 + double(objective)});
   }
   const SelectionTable table(everyone, experiment, 0);
   EXPECT_THAT(table.rows()[0].cases, ElementsAre(10, 20, 30, -11, -21, -31));

@@ -136,12 +136,12 @@ TEST(Wire, RefusesAValueThatATypeLacks) {
   ++work;
   EXPECT_THAT(refusal<message::Job>(job), testing::naming(" 3 ", " 3 values"));
 
-  std::string answer = message::packed(message::Answer{7, {{.result = {.status = Status::passive}}}, 0});
+  std::string answer = message::packed(message::Answer{7, {{.result = {.status = Status::lucky}}}, 0});
   char& status = answer.at(sizeof(message::Kind) + sizeof(message::Answer::job) + sizeof(std::size_t));
-  ASSERT_EQ(status, static_cast<char>(Status::passive));
+  ASSERT_EQ(status, static_cast<char>(Status::lucky));
   EXPECT_EQ(refusal<message::Answer>(answer), "no refusal");
   status = '\xff';
-  EXPECT_THAT(refusal<message::Answer>(answer), testing::naming(" 255 ", " 5 values"));
+  EXPECT_THAT(refusal<message::Answer>(answer), testing::naming(" 255 ", " 6 values"));
 }
 
 TEST(Wire, RefusesAMessageOfAnUnknownKindAndMoreValuesThanThereAreBytes) {

@@ -88,7 +88,7 @@ class UnsteadyRuns : public ::testing::Test {
   // 40 individuals for three cohorts, some of which are refused because their bones are stiff
   Experiment experiment_ =
       testing::small({"encoding={name = 'neural', points = 12, neighbours = 4}", "experiment.evaluations=160",
-                      "experiment.population=40", "experiment.verify_front=true", "materials.bone.stiffness=3e5",
+                      "experiment.population=40", "experiment.verify_front=trials", "materials.bone.stiffness=3e5",
                       "simulation.unstable=run"});
   Archive calm_ = evolved(create("calm"), *make_cpu_simulator(experiment_.scene, experiment_.stepping, 1));
 };

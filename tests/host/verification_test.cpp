@@ -1,5 +1,5 @@
 // Verification of champions: fitness that is an artefact is detected.
-#include "life/verification.hpp"
+#include "life/verification/verification.hpp"
 
 #include <gtest/gtest.h>
 
@@ -94,9 +94,9 @@ TEST(Verify, AVerdictSaysWhatOtherLivesSay) {
   add("reborn-1", 1.4);
   add("reborn-2", 1.6);
   add("reborn-3", -3);
-  EXPECT_EQ(verdict_text(verification, true), "verified in this life, kept in 1 of 3 others");
+  EXPECT_EQ(verdict_text(verification, true), "verified, kept in 1 of 3 lives to come");
   verification.trials.front().value = 0;
-  EXPECT_EQ(verdict_text(verification, true), "artefact in this life, kept in 1 of 3 others");
+  EXPECT_EQ(verdict_text(verification, true), "artefact, kept in 1 of 3 lives to come");
 }
 
 TEST(Verify, BeforeTheFrontMakesTheSameTrialsToTheFirstMark) {
@@ -203,7 +203,7 @@ TEST(Verify, WhatWasRecordedOfALifeHappensAgain) {
   run.experiment.seed += 1;  // operators would draw other numbers
   std::size_t recorded = 0;
   for (const Verification& verification : verify_best(run.experiment, *run.simulator, run.archive, 24)) {
-    if (!run.archive.life(verification.individual)) continue;
+    if (run.archive.lives(verification.individual).empty()) continue;
     ++recorded;
     EXPECT_EQ(value(verification, "again"), verification.fitness) << verification.individual;
   }
@@ -221,7 +221,7 @@ TEST(Verify, WarnsOfLivesThatMayHaveDevelopedOtherwise) {
   EXPECT_THAT(warned, testing::naming("on another device", "on " + run.simulator->device()));
   for (const std::uint32_t id : run.archive.best(24)) {
     const bool warns = warned.find("warning: individual " + std::to_string(id) + " ") != std::string::npos;
-    EXPECT_EQ(warns, !run.archive.life(id).has_value()) << warned;
+    EXPECT_EQ(warns, run.archive.lives(id).empty()) << warned;
   }
 }
 

@@ -40,7 +40,7 @@ Scorer spy(
 Life lived(const Experiment& experiment) { return testing::lived(experiment, {2, 2}); }
 
 void expect_same_life(const Life& a, const Life& b) {
-  EXPECT_EQ(a.result.record, b.result.record);
+  EXPECT_EQ(a.record, b.record);
   EXPECT_EQ(a.result.spring_evaluations, b.result.spring_evaluations);
   EXPECT_EQ(a.living.state.position, b.living.state.position);
   EXPECT_EQ(a.living.state.velocity, b.living.state.velocity);
@@ -153,7 +153,7 @@ TEST(Windows, GoOnCountingAcrossEdits) {
   Request request{.settle = 0, .window = 0.2, .work = true, .cycle = 0, .rate = 35};
   request.channels = {.contact = true, .work = true, .contacts = true};
   score_by(experiment, {spy(request, see)});
-  EXPECT_FALSE(alive(lived(experiment)).result.record.empty()) << "there must be edits";
+  EXPECT_FALSE(alive(lived(experiment)).record.empty()) << "there must be edits";
   EXPECT_GT(all, 0.1);
   EXPECT_GT(work, 0);
 }

@@ -14,7 +14,8 @@ inline void commit_one(Archive& archive, std::uint32_t generation, std::uint32_t
   individual.result.objectives = {0.3, 1};
   individual.result.objectives.resize(archive.objectives().size());
   individual.provenance = provenance;
-  archive.commit({individual}, {}, {}, {.generation = generation, .evaluations = generation + 1});
+  individual.measured = generation;
+  archive.commit({.newborns = {individual}, .summary = {.generation = generation, .evaluations = generation + 1}});
 }
 
 }  // namespace evodevo::testing

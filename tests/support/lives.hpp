@@ -59,8 +59,9 @@ inline std::vector<Result> expect_independent_lives(const Experiment& experiment
     EXPECT_EQ(alone.status, together[i].status) << i;
     EXPECT_EQ(alone.reason, together[i].reason) << i;
     EXPECT_EQ(alone.objectives, together[i].objectives) << i;
+    EXPECT_EQ(alone.lives, together[i].lives) << i;
     EXPECT_EQ(alone.spring_evaluations, together[i].spring_evaluations) << i;
-    EXPECT_TRUE(alone.record == together[i].record) << i;
+    EXPECT_TRUE(alone.records == together[i].records) << i;
   }
   return together;
 }

@@ -65,7 +65,7 @@ class Stretch final : public Fitness {
 /// An experiment on pairs in empty space, without development, whose front is verified.
 inline Experiment pairs() {
   Experiment experiment = testing::read(testing::small_experiment);
-  experiment.verify_front = true;
+  experiment.verify_front = VerifyFront::trials;
   experiment.scene = {};
   experiment.development.cycles = 0;
   experiment.stepping.precision = Precision::float64;

@@ -30,12 +30,12 @@ inline void expect_same_runs(const Archive& a, const Archive& b) {
     EXPECT_EQ(std::tie(one.born, one.died, one.origin, one.parents, one.made_by),
               std::tie(other.born, other.died, other.origin, other.parents, other.made_by));
     const Result &r = one.result, &s = other.result;
-    EXPECT_EQ(std::tie(r.status, r.reason, r.ended_at, r.objectives, r.measures, r.spring_evaluations),
-              std::tie(s.status, s.reason, s.ended_at, s.objectives, s.measures, s.spring_evaluations));
+    EXPECT_EQ(std::tie(r.status, r.reason, r.ended_at, r.objectives, r.lives, r.measures, r.spring_evaluations),
+              std::tie(s.status, s.reason, s.ended_at, s.objectives, s.lives, s.measures, s.spring_evaluations));
     const std::vector<ArchivedTest> tests = a.tests(id), other_tests = b.tests(id);
     ASSERT_EQ(tests.size(), other_tests.size()) << id;
     for (std::size_t i = 0; i < tests.size(); ++i) EXPECT_EQ(tests[i].value, other_tests[i].value) << id;
-    EXPECT_EQ(a.life(id), b.life(id)) << id;
+    EXPECT_EQ(a.lives(id), b.lives(id)) << id;
   }
   EXPECT_FALSE(b.individual(id).has_value());
   EXPECT_GT(id, 0u);

@@ -33,12 +33,14 @@ inline void score_by(Experiment& experiment, const std::vector<Scorer>& scorers,
                      std::optional<std::size_t> scenario = std::nullopt) {
   experiment.fitness.clear();
   experiment.objectives.clear();
+  experiment.over_lives.clear();
   experiment.measures.clear();
   for (const Scorer& scorer : scorers) {
     experiment.fitness.push_back({std::make_unique<Scorer>(scorer), over, scenario});
     for (const Objective& score : scorer.all)
       (score.role == Role::objective ? experiment.objectives : experiment.measures).push_back(score);
   }
+  experiment.over_lives.resize(experiment.objectives.size());
 }
 
 /// Returns a life, which is to be alive.
@@ -51,7 +53,8 @@ inline Life alive(Life life) {
 inline Life lived(const Experiment& experiment, const Genome& genome, std::uint32_t id = 0) {
   const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 1);
   const Evaluation evaluation(experiment, *simulator);
-  Matured matured = evaluation.matured(evaluation.birth.of(std::vector<Newborn>{{id, 0, &genome}}), [](double) {});
+  Cohort matured =
+      evaluation.matured(evaluation.birth.in_all_scenes(std::vector<Newborn>{{id, 0, &genome}}), [](double) {});
   evaluation.measurement.run(matured, [](double) {});
   return std::move(matured.lives.front());
 }

@@ -46,9 +46,9 @@ inline std::unique_ptr<Simulator> simulator_for(const Experiment& experiment, in
   return make_cpu_simulator(experiment.scene, experiment.stepping, threads);
 }
 
-inline Life matured(const Experiment& experiment, std::optional<LifeRecord> record = std::nullopt) {
+inline Life matured(const Experiment& experiment, std::vector<LifeRecord> records = {}) {
   static const Genome genome = {1, 2};
-  const Newborn newborn{0, 0, &genome, std::move(record)};
+  const Newborn newborn{0, 0, &genome, std::move(records)};
   Life life = std::move(Developed(experiment, {&newborn, 1}, 1).lives.front());
   EXPECT_EQ(life.result.status, Status::ok) << life.result.reason;
   return life;

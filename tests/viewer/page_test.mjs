@@ -93,9 +93,9 @@ test("it says what limits the speed of robots, and how near the best came to it"
 });
 
 test("it shows whom verification before the front has refused", async () => {
-  const run = ran("verified", ["experiment.verify_front=true"]);
+  const run = ran("verified", ["experiment.verify_front=trials"]);
   const verified = await opened(reported(run, "--best", "1"));
-  const rows = archived(run, "SELECT artefact, passive FROM generations ORDER BY generation");
+  const rows = archived(run, "SELECT artefact, passive FROM generations ORDER BY generation"); // none are lucky
   const counts = [0, 1].map((i) => sum(rows.map((row) => row[i])));
   assert.ok(sum(counts) > 0);
   const facts = await verified.locator(".fact", { hasText: "Ended well" }).textContent();
@@ -115,6 +115,35 @@ test("it shows whom verification before the front has refused", async () => {
   assert.match(verdict, /^(verified|artefact|passive)/);
   assert.ok((await verified.locator(".fact", { hasText: "The best, verified" }).textContent()).endsWith(verdict));
   await closed(verified);
+});
+
+test("its menu has each life of the best, each with its own score and film, and its table has the robot once", async () => {
+  const run = ran("lives", ["experiment.lives=3", "experiment.birth_noise=0.02", "development.draws_between_lives=new"]);
+  const living = await opened(reported(run, "--best", "1"));
+  const [[best]] = archived(run, "SELECT individual FROM scores WHERE objective = 0 ORDER BY value DESC, individual LIMIT 1");
+  const scores = archived(run, `SELECT value FROM life_scores WHERE individual = ${best} AND objective = 0 ORDER BY life`);
+  assert.equal(scores.length, 3);
+  const menu = await living.locator(".pickers select").first().locator("option").allTextContents();
+  const own = menu.filter((text) => text.includes(`individual ${best},`));
+  assert.deepEqual(own.map((text) => /life (\d)/.exec(text)?.[1]), ["1", "2", "3"]);
+  const said = own.map((text) => /life \d, (.*)/.exec(text)[1]);
+  assert.equal(new Set(said).size, 3, said.join());
+  const shown = await inPage(living, ({ viewer }) =>
+    viewer.robots.slice(0, 3).map(({ robot }) => robot.lives[robot.life - 1].distance));
+  assert.deepEqual(shown, scores.flat());
+  const ends = await inPage(living, async ({ viewer }) => {
+    const bodies = [];
+    for (const life of [0, 1, 2]) {
+      await viewer.show(life);
+      bodies.push(JSON.stringify(viewer.stages[0].life.robot.film.shots.at(-1)));
+    }
+    return bodies;
+  });
+  assert.equal(new Set(ends).size, 3);
+  const rows = await living.locator(".table.robots tbody tr").allTextContents();
+  assert.equal(rows.filter((text) => text.startsWith("best")).length, 1);
+  assert.deepEqual(living.complaints, []);
+  await closed(living);
 });
 
 test("a name with markup in it is shown as text", async () => {

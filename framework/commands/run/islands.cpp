@@ -54,11 +54,11 @@ void verify_best_of_all(Islands& islands, Simulator& simulator, std::size_t coun
   std::vector<std::size_t> counts(islands.archives.size());  // of an island, its own best come first among all
   for (const Ranked& one : best_of_all(islands, count)) ++counts[one.island];
   for (std::size_t i = 0; i < counts.size(); ++i) {
+    if (counts[i] == 0) continue;
     const Experiment& island = islands.experiments[i];
-    for (const Verification& verification : verify_best(island, simulator, islands.archives[i], counts[i])) {
-      std::cout << "island " << island.island << ": ";
-      print(verification, island.objectives.front());
-    }
+    const std::vector<Verification> verifications = verify_best(island, simulator, islands.archives[i], counts[i]);
+    std::cout << "island " << island.island << ":\n";
+    print(verifications, island.objectives.front());
   }
 }
 

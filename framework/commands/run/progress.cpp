@@ -56,7 +56,7 @@ ProgressDisplay::ProgressDisplay(const Experiment& experiment, const std::vector
   evaluations_ = static_cast<double>(last_.evaluations);
   for (const Summary& summary : past) {
     diverged_ += summary.diverged;
-    refused_ += summary.artefact + summary.passive;
+    refused_ += summary.refused();
     spring_evaluations_before_ += static_cast<double>(summary.spring_evaluations);
     seconds_before_ += summary.wall_time;
   }
@@ -95,7 +95,7 @@ std::vector<LinePart> ProgressDisplay::parts(double evaluations) const {
   add(0, "best " + optional_text(last_.best));
   add(3, "median " + optional_text(last_.median) + of);
   add(5, fmt::format("diverged {:.1f} %", percent(diverged_)));
-  if (experiment_.verify_front) add(5, fmt::format("artefact or passive {:.1f} %", percent(refused_)));
+  if (experiment_.verify_front != VerifyFront::off) add(5, fmt::format("refused {:.1f} %", percent(refused_)));
   if (farm_) add(5, ranks_text(farm_->shares(), seconds()));
   if (rate > 0) add(4, fmt::format("{:.3g} evaluations/s", rate));
   if (rate > 0) add(2, duration_text(seconds_left(evaluations)) + " left");
@@ -117,7 +117,7 @@ void ProgressDisplay::show_live() {
 void ProgressDisplay::generation_done(const Summary& summary) {
   last_ = summary;
   diverged_ += summary.diverged;
-  refused_ += summary.artefact + summary.passive;
+  refused_ += summary.refused();
   spring_evaluations_ += summary.spring_evaluations;
   evaluations_ = static_cast<double>(summary.evaluations);
   if (live_)
@@ -174,11 +174,11 @@ void print_speed(double spring_evaluations, double seconds, double verifying) {
 }
 
 void print_shares(const std::vector<Share>& shares, double whole) {
-  double lives = 0;
-  for (const Share& share : shares) lives += static_cast<double>(share.lives);
+  double robots = 0;
+  for (const Share& share : shares) robots += static_cast<double>(share.robots);
   for (const Share& share : shares) {
-    remarks() << fmt::format("rank {} on {}: {} lives ({:.0f} %)", share.rank, share.host, share.lives,
-                             100 * static_cast<double>(share.lives) / std::max(lives, 1.0));
+    remarks() << fmt::format("rank {} on {}: {} robots ({:.0f} %)", share.rank, share.host, share.robots,
+                             100 * static_cast<double>(share.robots) / std::max(robots, 1.0));
     remarks() << fmt::format(", idle {:.0f} %", idle_percent(share, whole))
               << (share.lost ? "; lost on the way\n" : "\n");
   }

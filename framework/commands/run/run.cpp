@@ -158,8 +158,7 @@ void verify_and_show(const Experiment& experiment, Simulator& simulator, Archive
   const bool has_best = !archive.best(1).empty();
   const std::size_t count =
       begin_ending(experiment, output, has_best, shell_command({"verify", archive.folder().string()}));
-  for (const Verification& verification : verify_best(experiment, simulator, archive, count))
-    print(verification, experiment.objectives.front());
+  print(verify_best(experiment, simulator, archive, count), experiment.objectives.front());
   if (!output.page) return;
   const ShownRun shown{experiment, archive};
   show_runs(archive.folder(), {&shown, 1}, simulator);

@@ -110,6 +110,28 @@ const Scenario* given_developing_scenario(const Experiment& experiment, const Gi
                    ": robots do not develop in it, because its key develops is false; leave the option out");
 }
 
+void add_life_option(Options& options, const char* text) {
+  options.add_options()("life", value<std::int64_t>("K"), text);
+}
+
+std::optional<std::int64_t> given_life_number(const Given& given) {
+  return given.contains("life") ? std::optional(given["life"].as<std::int64_t>()) : std::nullopt;
+}
+
+Newborn life_of(const Newborn& individual, const Experiment& experiment, std::int64_t number) {
+  std::vector<Newborn> lives = each_life(experiment, {&individual, 1});
+  if (number < 1 || number > std::ssize(lives))
+    throw UsageError(
+        option_text("life", std::to_string(number)) + ": individual " + std::to_string(individual.id) + " has had " +
+        (lives.size() == 1 ? "one life; leave the option out, or give 1"
+                           : std::to_string(lives.size()) + " lives; expected 1 to " + std::to_string(lives.size())));
+  return std::move(lives[static_cast<std::size_t>(number - 1)]);
+}
+
+Newborn given_life(const Newborn& individual, const Experiment& experiment, const Given& given) {
+  return life_of(individual, experiment, given_life_number(given).value_or(1));
+}
+
 void add_machine_options(Options& options) {
   threads.add_to(options);
   options.add_options()(

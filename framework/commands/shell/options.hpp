@@ -27,6 +27,15 @@ std::vector<std::filesystem::path> files_of_run(const std::filesystem::path& fol
 /// Adds --individual, which names one individual.
 void add_individual_option(Options& options);
 
+/// Adds --life, which names a life of an individual by its number. `text` says what for.
+void add_life_option(Options& options, const char* text);
+/// Returns the number of the life that --life names, or nothing without this option.
+std::optional<std::int64_t> given_life_number(const Given& given);
+/// Returns a life of an individual as a newborn. Throws UsageError, which names --life, if it has had no such life.
+Newborn life_of(const Newborn& individual, const Experiment& experiment, std::int64_t number);
+/// Returns the life that --life names; the first one without this option.
+Newborn given_life(const Newborn& individual, const Experiment& experiment, const Given& given);
+
 /// Adds --scenario, which names a scenario. `text` says what for.
 void add_scenario_option(Options& options, const char* text);
 /// Returns the index of the scenario that --scenario names, or nothing without this option. Throws UsageError if the

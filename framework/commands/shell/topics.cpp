@@ -19,7 +19,8 @@ Topic experiment() {
           {{"[experiment]",
             "How long the run takes: seed, evaluations, spring_evaluations; population, and children, the number of "
             "newborns of a generation; verify, the number of best individuals that are verified at the end; "
-            "verify_front, whether individuals are verified before they enter the front."},
+            "verify_front, how individuals are verified before they enter the front; lives and birth_noise, how often "
+            "each individual lives, and in what its lives differ."},
            {"[encoding]",
             "The operator that builds a body from a genome: name, and the parameters of that operator. The "
             "neural encoding has points, neighbours and mass (kg), among others."},
@@ -115,20 +116,20 @@ Topic archive() {
                "A generation is one transaction. Ctrl-C ends a run after the current generation, a second Ctrl-C "
                "ends it at once; `evodevo resume` goes on in both cases, and ends with the same genes and scores as "
                "a run that was never interrupted. Only one process at a time can write a run; any number can read it."},
-      .definitions = {{"record", "Texts about the whole run, each under a key, such as experiment, name and seed."},
-                      {"individuals",
-                       "Id, generation of birth and of death, parents, operators that made it, genes, "
-                       "status and reason."},
-                      {"scores", "The value of each objective of each individual with a fitness."},
-                      {"objectives", "Name, unit and direction of each objective."},
-                      {"measures, measured",
-                       "Name, unit and role of each score that is not an objective, and its values."},
-                      {"scenarios, tests", "Names of the scenarios, and the scores in each of them and its repeats."},
-                      {"generations", "Best, median and counts of each generation."},
-                      {"members",
-                       "The individuals in the population after each generation, and the ages of their genes."},
-                      {"lives", "The edits that development made to individuals that reached the Pareto front."},
-                      {"verifications", "The trials of verified individuals (see `evodevo help verification`)."}},
+      .definitions =
+          {{"record", "Texts about the whole run, each under a key, such as experiment, name and seed."},
+           {"individuals",
+            "Id, generation of birth and of death, parents, operators that made it, genes, "
+            "status and reason."},
+           {"scores", "The value of each objective of each individual with a fitness."},
+           {"objectives", "Name, unit and direction of each objective."},
+           {"measures, measured", "Name, unit and role of each score that is not an objective, and its values."},
+           {"scenarios, tests", "Names of the scenarios, and the scores in each of them and its repeats."},
+           {"generations", "Best, median and counts of each generation."},
+           {"members", "The individuals in the population after each generation, and the ages of their genes."},
+           {"lives", "The edits that development made in each life of individuals that reached the Pareto front."},
+           {"life_scores", "The scores in each life of individuals that have had several."},
+           {"verifications", "The trials of verified individuals (see `evodevo help verification`)."}},
       .example = "sqlite3 runs/quickstart-1/run.sqlite \"SELECT generation, best FROM generations\"\n"};
 }
 
@@ -140,16 +141,19 @@ Topic verification() {
           {"Fitness can come from an error of the simulation, such as energy that too long a time step adds. At its "
            "end, a run therefore simulates its best individuals again ([experiment] verify, 1 by default), and "
            "`evodevo verify` does so for more of them. The body develops as in the run; then its final evaluation "
-           "is repeated in eight trials. A robot that develops is also born again three times.",
+           "is repeated in eight trials. A robot that develops also lives again in eight lives to come.",
            "A trial has held if the first objective is as good as in the run, better, or worse by at most half of its "
            "absolute value. An individual is an artefact if quarter-step or other-method did not hold. It is passive "
            "if it keeps more than half of its fitness without muscles, or has lost more than half of it after ten more "
-           "seconds. Otherwise it is verified. If it was born again, the verdict also says in how many of these other "
-           "lives it kept its fitness.",
-           "With [experiment] verify_front = true, individuals are also verified before they enter the front of a "
-           "generation, in four of the trials: no-muscles and settled, then quarter-step and other-method. The first "
-           "trial that shows an artefact or a passive individual decides its status; it loses its fitness, and is not "
-           "tried further. All four trials run on the device of the run, while quarter-step and other-method at the "
+           "seconds. Otherwise it is verified. The verdict also says in how many lives to come it kept its fitness.",
+           "With [experiment] verify_front = \"trials\", individuals are also verified before they enter the front of "
+           "a "
+           "generation, in four of the trials: no-muscles and settled, then quarter-step and other-method. With "
+           "\"lives\", they must also keep half of their fitness in new lives, and are lucky otherwise. The first "
+           "trial "
+           "that shows an artefact, a lucky or a passive individual decides its status; it loses its fitness, and is "
+           "not tried further. All these trials run on the device of the run, while quarter-step and other-method at "
+           "the "
            "end "
            "of a run always use the CPU."},
       .definitions =
@@ -163,9 +167,10 @@ Topic verification() {
             "to 1e-4 of the longest side of the body."},
            {"no-muscles", "No muscle changes its length."},
            {"settled", "The measurement begins ten seconds later."},
-           {"reborn-1, reborn-2, reborn-3",
-            "If there is development: a new life from birth on, which begins with such a perturbation, and in "
-            "which operators draw other random numbers."}},
+           {"reborn-1 to reborn-4",
+            "If there is development or noise at birth: a new life from birth on, with other noise or such a "
+            "perturbation. Operators draw the same random numbers as in the run."},
+           {"redrawn-1 to redrawn-4", "If there is development: the same, and operators draw other random numbers."}},
       .example = "evodevo verify runs/quickstart-1 --best 10\n"};
 }
 

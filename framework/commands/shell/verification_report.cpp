@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "base/text.hpp"
+#include "commands/shell/options.hpp"
 #include "commands/shell/output/notices.hpp"
 #include "evolution/resimulation.hpp"
 
@@ -13,20 +14,10 @@ namespace {
 
 std::string number(const std::optional<double>& value) { return value ? short_number(*value) : "-"; }
 
-}  // namespace
-
-std::vector<Verification> verify_best(const Experiment& experiment, Simulator& simulator, Archive& archive,
-                                      std::size_t count) {
+std::vector<ArchivedIndividual> best_of(const Archive& archive, std::size_t count) {
   std::vector<ArchivedIndividual> individuals;
   for (const std::uint32_t id : archive.best(count)) individuals.push_back(archive.known_individual(id));
-  std::vector<Champion> champions;
-  for (const ArchivedIndividual& individual : individuals)
-    champions.push_back(
-        {for_resimulation(archive, experiment, individual, simulator.device()), individual.result.objectives.front()});
-  std::vector<Verification> verifications =
-      timed("verifying the best individuals", [&] { return verify(experiment, simulator, champions); });
-  archive.add_verifications(verifications);
-  return verifications;
+  return individuals;
 }
 
 void print(const Verification& verification, const Objective& objective) {
@@ -39,6 +30,39 @@ void print(const Verification& verification, const Objective& objective) {
     if (!trial.reason.empty()) std::cout << ", " << name(trial.status) << ": " << trial.reason;
     std::cout << '\n';
   }
+}
+
+}  // namespace
+
+std::vector<Verification> verify_best(const Experiment& experiment, Simulator& simulator, Archive& archive,
+                                      std::size_t count) {
+  const std::vector<ArchivedIndividual> individuals = best_of(archive, count);
+  std::vector<Champion> champions;
+  for (const ArchivedIndividual& individual : individuals)
+    champions.push_back(
+        {for_resimulation(archive, experiment, individual, simulator.device()), individual.result.objectives.front()});
+  std::vector<Verification> verifications =
+      timed("verifying the best individuals", [&] { return verify(experiment, simulator, champions); });
+  archive.add_verifications(verifications);
+  return verifications;
+}
+
+std::vector<Verification> verify_life_of_best(const Experiment& experiment, Simulator& simulator,
+                                              const Archive& archive, std::size_t count, std::int64_t life) {
+  const std::vector<ArchivedIndividual> individuals = best_of(archive, count);
+  std::vector<Champion> champions;
+  for (const ArchivedIndividual& individual : individuals) {
+    const Newborn newborn = for_resimulation(archive, experiment, individual, simulator.device());
+    champions.push_back({life_of(newborn, experiment, life), 0});
+    champions.back().fitness = individual.result.lives.at(static_cast<std::size_t>(life - 1)).front();
+  }
+  return timed("verifying a life of the best individuals",
+               [&] { return verify(experiment, simulator, champions, VerifiedLives::seen); });
+}
+
+void print(const std::vector<Verification>& verifications, const Objective& objective) {
+  for (const Verification& verification : verifications) print(verification, objective);
+  if (const std::string choice = choice_text(verifications, objective); !choice.empty()) std::cout << choice << '\n';
   std::cout << std::flush;
 }
 

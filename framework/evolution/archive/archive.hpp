@@ -12,7 +12,7 @@
 #include "evolution/archive/journal.hpp"
 #include "evolution/population.hpp"
 #include "evolution/provenance.hpp"
-#include "life/verification.hpp"
+#include "life/verification/verification.hpp"
 
 namespace evodevo {
 
@@ -29,6 +29,25 @@ bool is_begun(const std::filesystem::path& folder);
 /// archive that was not begun.
 void begin_run_folder(const std::filesystem::path& folder);
 
+/// Records of lives of one individual, which follow each other.
+struct RecordedLives {
+  std::uint32_t first = 1;  ///< number of the first of them
+  std::vector<LifeRecord> records;
+};
+using LivesById = std::map<std::uint32_t, RecordedLives>;
+
+/// What a generation adds to the archive.
+struct FinishedGeneration {
+  std::vector<Individual> newborns;        ///< with their results
+  std::vector<Individual> measured_again;  ///< members of the population that have lived again, with all scores
+  std::vector<std::uint32_t> dropped;      ///< ids of those that selection dropped
+  LivesById lives;                         ///< of individuals on the front, as far as they are new
+  Summary summary;
+  Remembered remembered;                ///< of the selection operator
+  std::vector<Refusal> refusals;        ///< of newborns or older ones
+  std::vector<Emigration> emigrations;  ///< after the generation
+};
+
 /// An individual with the generation in which it was dropped.
 struct ArchivedIndividual : Individual {
   std::optional<std::uint32_t> died;
@@ -36,6 +55,7 @@ struct ArchivedIndividual : Individual {
 
 /// A score of an individual in one repeat of one scenario.
 struct ArchivedTest {
+  std::uint32_t life = 1;  ///< number of the life, from 1
   std::string scenario;
   std::int64_t repeat = 0;  ///< from 0
   std::string objective;
@@ -113,16 +133,11 @@ class Archive {
   Archive(Archive&&) noexcept;
   ~Archive();
 
-  /// Adds one generation in one transaction: its newborns with their results, the ids of the individuals that selection
-  /// dropped, records of lives by id, its summary, what the selection operator remembers and notes, and who emigrates
-  /// after it. An empty record
-  /// is stored too; it means that the individual was on the front and that its body did not change. The memory replaces
-  /// that of the generation before; a note is added if it differs from the last one about the same individual. The
-  /// refused, who may be newborns or older, get the status and the reason of the refusal, and lose their scores.
-  void commit(const std::vector<Individual>& newborns, const std::vector<std::uint32_t>& dropped,
-              const std::map<std::uint32_t, LifeRecord>& lives, const Summary& summary,
-              const Remembered& remembered = {}, const std::vector<Refusal>& refusals = {},
-              const std::vector<Emigration>& emigrations = {});
+  /// Adds one generation in one transaction. An empty record of a life is stored too; it means that the individual was
+  /// on the front and that its body did not change. What the selection operator remembers replaces that of the
+  /// generation before; a note is added if it differs from the last one about the same individual. The refused get the
+  /// status and the reason of the refusal, and lose their scores.
+  void commit(const FinishedGeneration& generation);
 
   /// Adds verifications. They replace earlier verifications of the same individuals. Leaves out those of individuals
   /// that have lost their fitness since they were chosen.
@@ -196,10 +211,10 @@ class Archive {
   std::vector<NoteHistory> note_histories() const;
   /// Returns what the selection operator remembers after the last generation; empty if that is nothing.
   std::vector<std::byte> memory() const;
-  /// Returns the scores of an individual in each repeat of each scenario, in the order of the experiment.
+  /// Returns the scores of an individual in each repeat of each scenario, life by life, in the order of the experiment.
   std::vector<ArchivedTest> tests(std::uint32_t id) const;
-  /// Returns the record of an individual's life, or nullopt if the individual never reached the front.
-  std::optional<LifeRecord> life(std::uint32_t id) const;
+  /// Returns the records of an individual's lives; none if the individual never reached the front.
+  std::vector<LifeRecord> lives(std::uint32_t id) const;
   /// Returns the verification of an individual, or nullopt if the individual has not been verified.
   std::optional<Verification> verification(std::uint32_t id) const;
 

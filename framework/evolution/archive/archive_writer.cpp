@@ -19,8 +19,7 @@ void ArchiveWriter::begin(FinishedGeneration generation) {
   const auto finished = std::make_shared<const FinishedGeneration>(std::move(generation));
   const auto commit = [&archive = archive_, finished] {
     const auto start = std::chrono::steady_clock::now();
-    archive.commit(finished->newborns, finished->dropped, finished->lives, finished->summary, finished->remembered,
-                   finished->refusals, finished->emigrations);
+    archive.commit(*finished);
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
   try {

@@ -2,23 +2,10 @@
 #pragma once
 
 #include <future>
-#include <map>
-#include <vector>
 
 #include "evolution/archive/archive.hpp"
 
 namespace evodevo {
-
-/// What a generation adds to the archive: the arguments of Archive::commit().
-struct FinishedGeneration {
-  std::vector<Individual> newborns;
-  std::vector<std::uint32_t> dropped;
-  std::map<std::uint32_t, LifeRecord> lives;
-  Summary summary;
-  Remembered remembered;
-  std::vector<Refusal> refusals;
-  std::vector<Emigration> emigrations;
-};
 
 /// Writes one generation at a time. If writing the one before took more than 0.1 s, and more than a tenth of the time
 /// of this one, it writes on a thread of its own. Until that ends, a crash or `kill -9` loses this generation, whose

@@ -16,13 +16,14 @@ namespace {
 constexpr std::int64_t no_limit = std::numeric_limits<std::int64_t>::max();
 constexpr std::int64_t most_ids = std::int64_t{1} << 32;  ///< largest number of evaluations, each of which uses one id
 
-constexpr std::array statuses_known{Status::ok, Status::invalid, Status::diverged, Status::artefact, Status::passive};
+constexpr std::array statuses_known{Status::ok,       Status::invalid, Status::diverged,
+                                    Status::artefact, Status::passive, Status::lucky};
 
 Status status_in(const Statement& row, int column) {
   const std::string text = row.text(column);
   for (const Status status : statuses_known)
     if (text == name(status)) return status;
-  row.refuse(column, "\"ok\", \"invalid\", \"diverged\", \"artefact\" or \"passive\"");
+  row.refuse(column, "\"ok\", \"invalid\", \"diverged\", \"artefact\", \"passive\" or \"lucky\"");
 }
 
 std::string line_or_empty(const Statement& row, int column) { return row.is_null(column) ? "" : row.line(column); }
@@ -43,7 +44,7 @@ std::int64_t count_of(const RunDatabase& run, const std::string& table) {
 
 constexpr const char* individual_columns =
     "SELECT id, born, origin, parent, mate, made_by, genes, status, reason, ended_at, spring_evaluations, died, "
-    "blocks, provenance, island, source FROM individuals LEFT JOIN immigrants ON individual = id ";
+    "blocks, provenance, island, source, lives, measured FROM individuals LEFT JOIN immigrants ON individual = id ";
 
 /// Reads individuals and checks them against the run's generations and objectives.
 class Individuals {
@@ -58,9 +59,11 @@ class Individuals {
         scenarios_(count_of(run, "scenarios")),
         scores_(run, "scores", "SELECT objective, value FROM scores WHERE individual = ? ORDER BY objective"),
         measured_(run, "measured", "SELECT measure, value FROM measured WHERE individual = ? ORDER BY measure"),
+        lives_(run, "life_scores",
+               "SELECT life, objective, value FROM life_scores WHERE individual = ? ORDER BY life, objective"),
         tests_(run, "tests",
-               "SELECT scenario, repeat, objective, value FROM tests WHERE individual = ? "
-               "ORDER BY scenario, repeat, objective") {
+               "SELECT life, scenario, repeat, objective, value FROM tests WHERE individual = ? "
+               "ORDER BY life, scenario, repeat, objective") {
     if (provenances_ == 0) run.refuse("the table provenances is empty");
     Statement last(run, "generations",
                    "SELECT generation, evaluations FROM generations ORDER BY generation DESC LIMIT 1");
@@ -81,6 +84,8 @@ class Individuals {
     read_parents(individual);
     individual.made_by = row_.line(5);
     individual.provenance = static_cast<std::uint32_t>(row_.integer(13, 0, provenances_ - 1));
+    individual.lives = static_cast<std::uint32_t>(row_.integer(16, 1, most_lives));
+    individual.measured = static_cast<std::uint32_t>(row_.integer(17, individual.born, *last_generation_));
     individual.genome = read_genome(row_, 6, 12, layout_);
     read_result(individual.result);
     if (!row_.is_null(14)) individual.migrated = Migrated{row_.integer(14, 0, most_islands), row_.index(15)};
@@ -95,9 +100,9 @@ class Individuals {
  private:
   /// Checks that no table has a row for an id that a later individual of the run will get.
   void check_ids(std::int64_t evaluations) {
-    for (const char* column :
-         {"individuals.id", "scores.individual", "lives.individual", "verifications.individual", "measured.individual",
-          "tests.individual", "notes.individual", "immigrants.individual", "emigrants.individual"}) {
+    for (const char* column : {"individuals.id", "scores.individual", "lives.individual", "verifications.individual",
+                               "measured.individual", "life_scores.individual", "tests.individual", "notes.individual",
+                               "immigrants.individual", "emigrants.individual"}) {
       const std::string_view name(column);
       const std::string table(name.substr(0, name.find('.'))), key(name.substr(table.size() + 1));
       Statement last(run_, table, "SELECT max(" + key + ") AS " + key + " FROM " + table);
@@ -134,6 +139,27 @@ class Individuals {
     if (static_cast<std::int64_t>(objectives.size()) != expected)
       run_.refuse("individual " + std::to_string(individual.id) + ", which is " + name(individual.result.status) +
                   ", has " + std::to_string(objectives.size()) + " scores, expected " + std::to_string(expected));
+    read_lives(individual);
+  }
+
+  void read_lives(ArchivedIndividual& individual) {
+    std::vector<std::vector<double>>& lives = individual.result.lives;
+    lives_.bind(individual.id);
+    while (lives_.step()) {
+      if (lives.empty() || std::ssize(lives.back()) == objectives_) lives.emplace_back();
+      const std::int64_t life = std::ssize(lives), position = std::ssize(lives.back());
+      lives_.integer(0, life, life);
+      lives_.integer(1, position, position);
+      lives.back().push_back(lives_.number(2));
+    }
+    const bool is_ok = individual.result.status == Status::ok;
+    if (lives.empty() && is_ok && individual.lives == 1) lives.push_back(individual.result.objectives);
+    const std::size_t expected = is_ok ? individual.lives : 0;
+    if (lives.size() != expected || (!lives.empty() && std::ssize(lives.back()) != objectives_))
+      run_.refuse("individual " + std::to_string(individual.id) + ", which is " + name(individual.result.status) +
+                  " and has had " + std::to_string(individual.lives) + " lives, has scores of " +
+                  std::to_string(lives.size()) + " lives, of which the last may be incomplete; expected " +
+                  std::to_string(expected));
   }
 
   /// Reads the scores that are not objectives. An individual that failed has none, or all if it violates a constraint.
@@ -157,8 +183,9 @@ class Individuals {
     tests_.bind(individual.id);
     while (tests_.step())
       individual.result.tests.push_back(
-          {static_cast<std::size_t>(tests_.integer(0, 0, scenarios_ - 1)), tests_.integer(1, 0, no_limit),
-           static_cast<std::size_t>(tests_.integer(2, 0, objectives_ - 1)), tests_.number(3)});
+          {tests_.index(0), static_cast<std::size_t>(tests_.integer(1, 0, scenarios_ - 1)),
+           tests_.integer(2, 0, no_limit), static_cast<std::size_t>(tests_.integer(3, 0, objectives_ - 1)),
+           tests_.number(4)});
   }
 
   const RunDatabase& run_;
@@ -166,7 +193,7 @@ class Individuals {
   std::int64_t objectives_;
   Statement row_;
   std::int64_t measures_, provenances_, scenarios_;
-  Statement scores_, measured_, tests_;
+  Statement scores_, measured_, lives_, tests_;
   std::optional<std::uint32_t> last_generation_;
 };
 
@@ -290,7 +317,7 @@ const Layout& Archive::layout() const {
 std::vector<Summary> Archive::generations() const {
   std::vector<Summary> summaries;
   Statement row(*run_, "generations",
-                "SELECT generation, evaluations, best, median, diverged, invalid, artefact, passive, clones, "
+                "SELECT generation, evaluations, best, median, diverged, invalid, artefact, lucky, passive, clones, "
                 "spring_evaluations, wall_time FROM generations ORDER BY generation");
   while (row.step()) {
     const auto position = static_cast<std::int64_t>(summaries.size());
@@ -302,10 +329,11 @@ std::vector<Summary> Archive::generations() const {
     summary.diverged = row.integer(4, 0, summary.evaluations);
     summary.invalid = row.integer(5, 0, summary.evaluations);
     summary.artefact = row.integer(6, 0, summary.evaluations);
-    summary.passive = row.integer(7, 0, summary.evaluations);
-    summary.clones = row.integer(8, 0, summary.evaluations);
-    summary.spring_evaluations = static_cast<std::uint64_t>(row.integer(9, 0, no_limit));
-    summary.wall_time = row.number(10);
+    summary.lucky = row.integer(7, 0, summary.evaluations);
+    summary.passive = row.integer(8, 0, summary.evaluations);
+    summary.clones = row.integer(9, 0, summary.evaluations);
+    summary.spring_evaluations = static_cast<std::uint64_t>(row.integer(10, 0, no_limit));
+    summary.wall_time = row.number(11);
   }
   return summaries;
 }
@@ -353,15 +381,6 @@ ArchivedIndividual Archive::known_individual(std::uint32_t id) const {
   auto known = individual(id);
   if (!known) refuse("it refers to individual " + std::to_string(id) + ", which it does not have");
   return std::move(*known);
-}
-
-std::optional<LifeRecord> Archive::life(std::uint32_t id) const try {
-  Statement row(*run_, "lives", "SELECT record FROM lives WHERE individual = ?");
-  row.bind(id);
-  if (!row.step()) return std::nullopt;
-  return LifeRecord(std::string(row.bytes(0)));
-} catch (const std::invalid_argument& error) {
-  refuse("individual " + std::to_string(id) + ": " + error.what());
 }
 
 std::vector<std::uint32_t> Archive::best(std::size_t count, std::size_t objective) const {

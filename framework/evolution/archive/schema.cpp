@@ -39,6 +39,8 @@ CREATE TABLE individuals(
   parent INTEGER, mate INTEGER,         -- ids
   made_by TEXT NOT NULL,
   provenance INTEGER NOT NULL,          -- of its result
+  lives INTEGER NOT NULL,               -- number of lives that it has had
+  measured INTEGER NOT NULL,            -- generation in which the last of them were evaluated
   genes BLOB NOT NULL,                  -- float32, little-endian
   blocks BLOB,                          -- of sections whose blocks come and go
   status TEXT NOT NULL, reason TEXT, ended_at REAL,
@@ -50,10 +52,15 @@ CREATE TABLE scores(
 CREATE TABLE measured(
   individual INTEGER NOT NULL, measure INTEGER NOT NULL, value REAL NOT NULL,
   PRIMARY KEY(individual, measure)) WITHOUT ROWID;
--- scores in each repeat of each scenario, from which the scores above are made
+-- scores in each life, from which those above are made, of individuals that have had several
+CREATE TABLE life_scores(
+  individual INTEGER NOT NULL, life INTEGER NOT NULL, objective INTEGER NOT NULL, value REAL NOT NULL,
+  PRIMARY KEY(individual, life, objective)) WITHOUT ROWID;
+-- scores in each repeat of each scenario, from which those of a life are made
 CREATE TABLE tests(
-  individual INTEGER NOT NULL, scenario INTEGER NOT NULL, repeat INTEGER NOT NULL, objective INTEGER NOT NULL,
-  value REAL NOT NULL, PRIMARY KEY(individual, scenario, repeat, objective)) WITHOUT ROWID;
+  individual INTEGER NOT NULL, life INTEGER NOT NULL, scenario INTEGER NOT NULL, repeat INTEGER NOT NULL,
+  objective INTEGER NOT NULL, value REAL NOT NULL,
+  PRIMARY KEY(individual, life, scenario, repeat, objective)) WITHOUT ROWID;
 -- what the selection operator noted about individuals; a number holds until the generation that has another one
 CREATE TABLE note_titles(position INTEGER PRIMARY KEY, name TEXT NOT NULL, unit TEXT NOT NULL, is_label INTEGER NOT NULL);
 CREATE TABLE notes(
@@ -61,12 +68,13 @@ CREATE TABLE notes(
   PRIMARY KEY(individual, note, generation)) WITHOUT ROWID;
 -- what it remembers after the last generation; at most one row
 CREATE TABLE memory(generation INTEGER PRIMARY KEY, bytes BLOB NOT NULL);
--- what development did to those who reached the front; see life_record.hpp
-CREATE TABLE lives(individual INTEGER PRIMARY KEY, record BLOB NOT NULL);
+-- what development did in each life of those who reached the front; see life_record.hpp
+CREATE TABLE lives(
+  individual INTEGER NOT NULL, life INTEGER NOT NULL, record BLOB NOT NULL, PRIMARY KEY(individual, life));
 CREATE TABLE generations(
   generation INTEGER PRIMARY KEY, evaluations INTEGER NOT NULL, best REAL, median REAL,
-  diverged INTEGER NOT NULL, invalid INTEGER NOT NULL, artefact INTEGER NOT NULL, passive INTEGER NOT NULL,
-  clones INTEGER NOT NULL,
+  diverged INTEGER NOT NULL, invalid INTEGER NOT NULL, artefact INTEGER NOT NULL, lucky INTEGER NOT NULL,
+  passive INTEGER NOT NULL, clones INTEGER NOT NULL,
   spring_evaluations INTEGER NOT NULL, wall_time REAL NOT NULL);
 -- who came from, and left for, other islands of the run, which are numbered from 1; those who came from island 0 are of
 -- the run that [experiment] start names

@@ -1,4 +1,4 @@
-// The functions of Archive that read scores apart from the individuals that have them.
+// The functions of Archive that read scores and lives apart from the individuals that have them.
 #include <limits>
 
 #include "base/text.hpp"
@@ -71,15 +71,30 @@ std::vector<Described> Archive::described(std::size_t count) const {
 }
 
 std::vector<ArchivedTest> Archive::tests(std::uint32_t id) const {
-  Statement row(*run_, "tests",
-                "SELECT scenarios.name, repeat, objectives.name, value FROM tests JOIN scenarios USING (scenario) "
-                "JOIN objectives ON position = objective WHERE individual = ? ORDER BY scenario, repeat, objective");
+  Statement row(
+      *run_, "tests",
+      "SELECT life, scenarios.name, repeat, objectives.name, value FROM tests JOIN scenarios USING (scenario) "
+      "JOIN objectives ON position = objective WHERE individual = ? "
+      "ORDER BY life, scenario, repeat, objective");
   row.bind(id);
   std::vector<ArchivedTest> tests;
   while (row.step())
-    tests.push_back(
-        {row.line(0), row.integer(1, 0, std::numeric_limits<std::int64_t>::max()), row.line(2), row.number(3)});
+    tests.push_back({row.index(0), row.line(1), row.integer(2, 0, std::numeric_limits<std::int64_t>::max()),
+                     row.line(3), row.number(4)});
   return tests;
+}
+
+std::vector<LifeRecord> Archive::lives(std::uint32_t id) const try {
+  Statement row(*run_, "lives", "SELECT life, record FROM lives WHERE individual = ? ORDER BY life");
+  row.bind(id);
+  std::vector<LifeRecord> lives;
+  while (row.step()) {
+    row.integer(0, std::ssize(lives) + 1, std::ssize(lives) + 1);
+    lives.emplace_back(std::string(row.bytes(1)));
+  }
+  return lives;
+} catch (const std::invalid_argument& error) {
+  refuse("individual " + std::to_string(id) + ": " + error.what());
 }
 
 std::vector<Membership> Archive::memberships(std::size_t objective) const {

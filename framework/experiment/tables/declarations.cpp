@@ -39,9 +39,16 @@ void declare_run(SettingsVisitor& v, Settings& s) {
   v.integer(s.random_individuals, "random_individuals", {0, 1e6},
             "Number of random individuals among those that are born in each generation; by default 0 if only "
             "one is born or the selection operator makes the children itself.");
+  v.integer(s.lives, "lives", {1, 1000},
+            "Number of lives of each individual: birth, development and measurement in all scenarios and repeats, each "
+            "life with its own noise and damage.");
+  v.real(s.birth_noise, "birth_noise", {0, 0.5, "1"},
+         "Largest offset by which each mass of a newborn is moved along each axis at random, relative to the body's "
+         "longest side; other offsets in each life.");
   v.integer(s.verify, "verify", {0, 1000}, "Number of best individuals that are verified when the run ends.");
-  v.flag(s.verify_front, "verify_front",
-         "Whether individuals are verified before they enter the front; those that do not hold lose their fitness.");
+  choice(v, s.verify_front, "verify_front",
+         "How individuals are verified before they enter the front, where those that do not hold lose their fitness: "
+         "trials, by the trials that find artefacts and passive robots; lives, also by new lives.");
   v.text(
       s.start, "start",
       "Folder of a run, relative to this file: its last population is born again in the first generation of this run; "
@@ -86,6 +93,8 @@ void declare_development(SettingsVisitor& v, Settings& s) {
   choice(v, d.draws, "draws",
          "Random numbers of development, noise and damage: inherited, the same in all individuals for masses of the "
          "same identity; or individual, others in each individual.");
+  choice(v, d.draws_between_lives, "draws_between_lives",
+         "Whether the random numbers of development are the same in all lives of an individual, or new in each.");
   v.integer(d.seed, "seed", {0, 0x1p53 - 1},
             "Seed of inherited draws, one for all islands; by default the run's or, with experiment.start, that of the "
             "run with whose last population this one begins.");
@@ -115,11 +124,23 @@ void declare_over(SettingsVisitor& v, std::string& over) {
       "the name of a scenario: the mean of its repeats.");
 }
 
+void declare_over_lives(SettingsVisitor& v, Over& over) {
+  choice(v, over, host_key::over_lives,
+         "How the scores of its objectives in several lives become one. Descriptors and measures: always their mean; "
+         "constraints: their worst.");
+}
+
 void declare_schedule(SettingsVisitor& v, Schedule& s) {
   constexpr Range cycles{1, rng_stream::most_cycles};
   v.integer(s.from, host_key::from, cycles, "First cycle after which the operator is applied.");
   v.integer(s.to, host_key::to, cycles, "Last cycle after which the operator may be applied.");
   v.integer(s.every, host_key::every, cycles, "Number of cycles from one application of the operator to the next.");
+}
+
+void declare_remeasure(SettingsVisitor& v, Settings& s) {
+  v.integer(s.remeasure, host_key::remeasure, {0, 1e6},
+            "Number of members of the population that live again in each generation, those first that were measured "
+            "longest ago; their scores become those of all their lives.");
 }
 
 void declare_probability(SettingsVisitor& v, double& probability) {

@@ -14,7 +14,9 @@ void declare_simulation(SettingsVisitor& visitor, Settings& settings);    ///< o
 void declare_development(SettingsVisitor& visitor, Settings& settings);   ///< [development] without its operators
 void declare_scenario(SettingsVisitor& visitor, Scenario& scenario);      ///< [[scenario]] without its name and forces
 void declare_over(SettingsVisitor& visitor, std::string& over);           ///< the host's key of a fitness operator
+void declare_over_lives(SettingsVisitor& visitor, Over& over);            ///< likewise
 void declare_schedule(SettingsVisitor& visitor, Schedule& schedule);      ///< the host's keys of a devo operator
+void declare_remeasure(SettingsVisitor& visitor, Settings& settings);     ///< the host's key in [selection]
 void declare_probability(SettingsVisitor& visitor, double& probability);  ///< the host's key of a variation operator
 
 void declare(SettingsVisitor& visitor, Material& material);  ///< [materials.NAME]

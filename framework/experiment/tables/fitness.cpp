@@ -37,6 +37,9 @@ class FitnessTables {
   void read_one(TomlReader& t, TomlWriter& writer) {
     Scored scored;
     read_over(t, writer, scored);
+    Over over_lives = Over::mean;
+    declare_over_lives(t, over_lives);
+    declare_over_lives(writer, over_lives);
     scored.op = factory_.make<Fitness>(t);
     const Fitness& fitness = *scored.op;
     factory_.write(t, *scored.op, writer);
@@ -57,6 +60,7 @@ class FitnessTables {
       const bool is_objective = objective.role == Role::objective;
       if (is_objective) check_front(t, objective, request);
       add_objective(t, std::move(objective));
+      if (is_objective) out_.over_lives.push_back(over_lives);
       if (is_objective) add_cases(request.cycle.has_value());
     }
     out_.fitness.push_back(std::move(scored));
@@ -64,9 +68,11 @@ class FitnessTables {
 
   /// Reports if the front cannot be verified: the first objective is measured within the life, or minimised.
   void check_front(const TomlReader& t, const Objective& objective, const Request& request) const {
-    if (!out_.verify_front || !out_.objectives.empty() || (!request.cycle && objective.maximise)) return;
+    if (out_.verify_front == VerifyFront::off || !out_.objectives.empty() || (!request.cycle && objective.maximise))
+      return;
     t.report("name",
-             "the experiment has verify_front = true, and the first objective, \"" + printable(objective.name) +
+             "the experiment has verify_front = \"" + std::string(name_of(out_.verify_front)) +
+                 "\", and the first objective, \"" + printable(objective.name) +
                  (request.cycle ? "\", is measured within the life, which verification does not repeat; put an "
                                   "operator that measures after maturing"
                                 : "\", is minimised, so that half of it is no measure; put one that is maximised") +

@@ -83,6 +83,8 @@ std::string experiment_reference() {
               [&](SettingsVisitor& v) {
                 std::string over(name_of(Scored().over));
                 declare_over(v, over);
+                Over over_lives = Over::mean;
+                declare_over_lives(v, over_lives);
               });
   text +=
       section("`[[scenario]]`",
@@ -93,6 +95,10 @@ std::string experiment_reference() {
                 Scenario scenario;
                 declare_scenario(v, scenario);
               });
+  text += section("`[selection]`",
+                  "The keys that this table has in addition to `name` and the parameters of the operator, or to the "
+                  "tables of two operators.",
+                  [&](SettingsVisitor& v) { declare_remeasure(v, s); });
   text += section_of<IslandSettings>(
       "`[islands]`",
       "Several populations in one run, between which individuals migrate. Without this table, there is "

@@ -47,6 +47,10 @@ Scenario read_scenario(TomlReader& table, const Settings& settings) {
     table.fail("name", "over = \"" + scenario.name +
                            "\" of a fitness operator means all scenarios; give this scenario another name");
   declare_scenario(table, scenario);
+  if (scenario.repeat > 1 && !scenario.is_random())
+    table.report("repeat",
+                 "all repeats would measure the same, since they differ by start_noise and damage alone; set one of "
+                 "these, or remove repeat");
   read_forces(table, scenario);
   return scenario;
 }

@@ -97,14 +97,27 @@ class SelectionTables {
     const toml::table* table = top.table("selection");
     const auto names = [&](const char* name) { return table != nullptr && (*table)[name].is_table(); };
     toml::table written;
+    const auto read_remeasure = [&](TomlReader& t) {
+      declare_remeasure(t, out_);
+      TomlWriter writer;
+      declare_remeasure(writer, out_);
+      for (auto&& [key, value] : writer.take()) written.insert_or_assign(key, value);
+    };
     if (names("parents") || names("survivors"))
       read_table(top, "selection", true, [&](TomlReader& t) {
+        read_remeasure(t);
         out_.selection = read_one(t, "survivors", {.parents = false}, written);
         out_.parent_selection = read_one(t, "parents", {.survivors = false}, written);
       });
     else
       visit_table(
-          top, "selection", true, [&](TomlReader& t) { out_.selection = read(t, {}, written); }, references_);
+          top, "selection", true,
+          [&](TomlReader& t) {
+            declare_remeasure(t, out_);
+            out_.selection = read(t, {}, written);
+            read_remeasure(t);
+          },
+          references_);
     record.insert_or_assign("selection", std::move(written));
   }
 

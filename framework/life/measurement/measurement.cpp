@@ -2,28 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "base/text.hpp"
 #include "life/body_building.hpp"
+#include "life/measurement/combining.hpp"
 
 namespace evodevo {
 namespace {
-
-/// Returns one score for the scores of all tests.
-double combined(std::vector<double> scores, Over over, bool maximise) {
-  std::sort(scores.begin(), scores.end());
-  const std::size_t middle = scores.size() / 2;
-  switch (over) {
-    case Over::worst:
-      return maximise ? scores.front() : scores.back();
-    case Over::median:
-      return scores.size() % 2 == 1 ? scores[middle] : std::midpoint(scores[middle - 1], scores[middle]);
-    case Over::mean:
-      break;
-  }
-  return std::accumulate(scores.begin(), scores.end(), 0.0) / static_cast<double>(scores.size());
-}
 
 /// Removes the samples of a life and what it has counted, so that the samples that follow do not depend on them.
 void begin_counting_anew(Life& life) {
@@ -66,7 +51,7 @@ double Measurement::duration() const {
          static_cast<double>(std::max<std::size_t>(1, tests_of(experiment_).size()));
 }
 
-void Measurement::run(Matured& matured, const Progress& progress) const {
+void Measurement::run(Cohort& matured, const Progress& progress) const {
   std::vector<std::vector<Scores>> tests(matured.lives.size());
   if (experiment_.scenarios.empty()) {
     std::vector<Scores> scores = scores_within(matured.lives, "");
@@ -88,7 +73,7 @@ void Measurement::run_in(const Test& test, std::span<Life> lives) const {
   for (std::size_t i = 0; i < lives.size(); ++i) set_scores({scores[i]}, lives[i]);
 }
 
-void Measurement::measure_in_scenarios(Matured& matured, std::vector<std::vector<Scores>>& tests,
+void Measurement::measure_in_scenarios(Cohort& matured, std::vector<std::vector<Scores>>& tests,
                                        const Progress& progress) const {
   const std::span<Life> lives = matured.lives;
   const std::vector<Scores> within_life = scores_within(lives, "");
@@ -135,7 +120,7 @@ void Measurement::add_test(const Test& test, const Scores& scores, const Result&
   for (std::size_t op = 0; op < scores.size(); ++op)
     for (std::size_t i = 0; i < scores[op].size(); ++i)
       if (const Place& place = places_[op][i]; place.role == Role::objective)
-        life.result.tests.push_back({test.scenario, test.repeat, place.index, scores[op][i]});
+        life.result.tests.push_back({life.newborn.life, test.scenario, test.repeat, place.index, scores[op][i]});
 }
 
 std::vector<Measurement::Scores> Measurement::scores_within(std::span<Life> lives, std::string_view scenario) const {

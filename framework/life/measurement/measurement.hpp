@@ -25,7 +25,7 @@ class Measurement {
   Measurement(const Experiment& experiment, const LifeSimulation& simulation, const Windows& windows);
 
   /// Evaluates `matured.lives`. Calls `progress` after each test.
-  void run(Matured& matured, const Progress& progress) const;
+  void run(Cohort& matured, const Progress& progress) const;
   /// Evaluates lives in one test, in which they also end. Their objectives are the scores of this test. If its scenario
   /// develops, they have matured there.
   void run_in(const Test& test, std::span<Life> lives) const;
@@ -45,7 +45,7 @@ class Measurement {
   /// Scores the windows within each life, and lets the lives begin to count anew.
   std::vector<Scores> scores_within(std::span<Life> lives, std::string_view scenario) const;
   /// Measures copies of lives in all tests, and adds the scores of each life that has not ended to its list.
-  void measure_in_scenarios(Matured& matured, std::vector<std::vector<Scores>>& tests, const Progress& progress) const;
+  void measure_in_scenarios(Cohort& matured, std::vector<std::vector<Scores>>& tests, const Progress& progress) const;
   /// Returns copies of matured lives at the start of a test. Those whose newborn has ended in `lives` end as well.
   std::vector<Life> started(const Test& test, std::span<const Life> lives, std::span<const Life> matured) const;
   /// Simulates lives in their present scene until the last window closes, and adds the scores to those of each life.

@@ -55,9 +55,9 @@ void do_damage(double share, Rng& random, LivingBody& living) {
   apply(Edits{.removed_masses = loose_masses(living.body)}, living);
 }
 
-/// Returns the stream of a test, which is the same for all individuals.
-Rng stream(const Test& test, const Experiment& experiment) {
-  return Rng(philox, {static_cast<std::uint64_t>(experiment.seed), static_cast<std::uint32_t>(test.scenario),
+/// Returns the stream of a test in the lives with this number, which is the same for all individuals.
+Rng stream(const Test& test, std::uint32_t life, const Experiment& experiment) {
+  return Rng(philox, {seed_of(experiment.seed, life), static_cast<std::uint32_t>(test.scenario),
                       static_cast<std::uint32_t>(test.repeat), rng_stream::scenario});
 }
 
@@ -80,9 +80,9 @@ std::vector<std::size_t> scenarios_that_develop(const Experiment& experiment) {
 void start_scenario(const Test& test, const Experiment& experiment, const LifeSimulation& simulation, Life& life) {
   const Scenario& scenario = experiment.scenarios[test.scenario];
   LivingBody& living = life.living;
-  const Draws draws = draws_for(experiment, life.newborn, "scenario " + scenario.name,
-                                static_cast<std::uint64_t>(test.repeat));
-  Rng random = draws.inherited() ? draws.stream("damage") : stream(test, experiment);
+  const Draws draws =
+      draws_of_life(experiment, life.newborn, "scenario " + scenario.name, static_cast<std::uint64_t>(test.repeat));
+  Rng random = draws.inherited() ? draws.stream("damage") : stream(test, life.newborn.life, experiment);
   const Scene& before = *std::exchange(life.scene, &scenario.scene);
   const bool was_here = &before == &scenario.scene;
   if (!was_here && scenario.payload != experiment.payload) change_payload(scenario.payload, living);

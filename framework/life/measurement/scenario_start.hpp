@@ -20,9 +20,9 @@ std::vector<std::size_t> scenarios_that_develop(const Experiment& experiment);
 
 /// Puts a matured life into a scenario, in this order: the scene, its load, muscles, damage, noise, the ground below
 /// the body, the time step. A life that has matured in the scenario keeps its scene and load. The random numbers of
-/// damage and noise depend on the seed, the scenario and the repeat alone, so that they are the same for all
-/// individuals. The life ends as invalid if no springs are left or its body cannot be simulated in the scenario. The
-/// experiment must outlive the life.
+/// damage and noise depend on the seed, the scenario, the repeat and the number of the life, so that they are the same
+/// for all individuals; if draws are inherited, on the identities of masses, too. The life ends as invalid if no
+/// springs are left or its body cannot be simulated in the scenario. The experiment must outlive the life.
 void start_scenario(const Test& test, const Experiment& experiment, const LifeSimulation& simulation, Life& life);
 
 }  // namespace evodevo

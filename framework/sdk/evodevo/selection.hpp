@@ -42,8 +42,8 @@ struct Candidate {
   bool ok() const { return !scores.empty(); }
 };
 
-/// What one number of Candidate::cases is: an objective in one repeat of one scenario. An objective that is not scored
-/// in scenarios is one case.
+/// What one number of Candidate::cases is: an objective in one repeat of one scenario, combined over the lives of the
+/// individual. An objective that is not scored in scenarios is one case.
 struct Case {
   std::uint32_t objective = 0;     ///< index into SelectionContext::objectives
   std::string_view scenario = {};  ///< name of the scenario; empty: none

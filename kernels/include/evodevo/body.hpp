@@ -157,9 +157,9 @@ inline Vec3 centre_of_mass(const Body& body, std::span<const Vec3> positions) {
   return total > 0 ? (1 / total) * sum : Vec3{};
 }
 
-/// How an evaluation ended, or what verification then found: `artefact` or `passive`. Only individuals with the status
-/// `ok` have a fitness.
-enum class Status : std::uint8_t { ok, invalid, diverged, artefact, passive };
+/// How an evaluation ended, or what verification then found: `artefact`, `lucky` or `passive`. Only individuals with
+/// the status `ok` have a fitness.
+enum class Status : std::uint8_t { ok, invalid, diverged, artefact, passive, lucky };
 
 inline const char* name(Status status) {
   switch (status) {
@@ -173,6 +173,8 @@ inline const char* name(Status status) {
       return "artefact";
     case Status::passive:
       return "passive";
+    case Status::lucky:
+      return "lucky";
   }
   return "?";
 }

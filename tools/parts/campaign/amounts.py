@@ -74,7 +74,7 @@ def first_robots(file, folder, control):
         "development.control": control,
         "experiment.evaluations": ROBOTS,
         "experiment.verify": 0,
-        "experiment.verify_front": "false",
+        "experiment.verify_front": "off",
     }
     words = [word for key, value in settings.items() for word in ("--set", f"{key}={value}")]
     return [file, "--out", folder / control, "--threads", 1, "--no-report", *words]

@@ -163,12 +163,12 @@ class Laws:
         """Returns the best robot; None if there is none."""
         best = json.loads(self._evodevo.output("show", folder, "--json"))["best"]
         with contextlib.closing(sqlite3.connect(folder / "run.sqlite")) as run:
-            for table in ("scores", "measured", "tests", "notes"):
+            for table in ("scores", "measured", "life_scores", "tests", "notes"):
                 for (value,) in run.execute(f"SELECT value FROM {table}"):
                     if not math.isfinite(value):
                         raise Broken(f"{table}: {value} is not finite")
             statuses = {status for (status,) in run.execute("SELECT DISTINCT status FROM individuals")}
-        if not statuses <= {"ok", "invalid", "diverged", "artefact", "passive"}:
+        if not statuses <= {"ok", "invalid", "diverged", "artefact", "lucky", "passive"}:
             raise Broken(f"statuses: {statuses}")
         self._is_replayed(best)
         return best

@@ -54,7 +54,9 @@ class Draw:
                 "children": random.randint(0, 7),
                 "random_individuals": random.randint(0, 2),
                 "verify": random.choice((0, 1, 1, 2)),
-                "verify_front": random.random() < 0.1,
+                "verify_front": random.choice(["off"] * 8 + ["trials", "lives"]),
+                "lives": random.choice((1, 1, 1, 2, 3)),
+                "birth_noise": random.choice((0, 0, 0, 0.001, 0.02)),
             },
             "encoding": self._operator("encoding"),
             "mutation": self._operators_of("mutation", 0, 3),
@@ -72,6 +74,8 @@ class Draw:
             tables["scenario"] = [self._scenario(number) for number in range(random.randint(1, 3))]
         for i, each in enumerate(tables["fitness"]):
             each["label"] = f"score-{i}"
+            if random.random() < 0.2:
+                each["over_lives"] = random.choice(("median", "worst"))
         if random.random() < SENSE:
             self._fit_together(tables)
         return {name: table for name, table in tables.items() if table != []}
@@ -79,8 +83,16 @@ class Draw:
     def _fit_together(self, tables):
         """Mends combinations that `evodevo check` refuses."""
         experiment, scene, selection = tables["experiment"], tables["scene"], tables["selection"]
+        random = self._random
         experiment["population"] = max(4, experiment["population"])
         experiment["children"] = max(4, experiment["children"])
+        if random.random() < 0.1:
+            selection["remeasure"] = random.randint(1, 4)
+        if experiment["lives"] > 1 or "remeasure" in selection:
+            experiment["birth_noise"] = experiment["birth_noise"] or 0.01
+        for each in tables.get("scenario", ()):
+            if each.get("repeat", 1) > 1:
+                each.setdefault("start_noise", 0.01)
         if "floor" not in scene:
             scene.pop("friction", None)
         elif "restitution" in scene["floor"]:
@@ -90,7 +102,8 @@ class Draw:
         if selection["name"] in ("cma-es", "differential"):
             tables["mutation"], tables["crossover"] = [], []
         if selection["name"] in ("tournament", "lexicase"):
-            tables["selection"] = {"parents": selection, "survivors": {"name": "elitist"}}
+            again = {"remeasure": selection.pop("remeasure")} if "remeasure" in selection else {}
+            tables["selection"] = {"parents": selection, "survivors": {"name": "elitist"}, **again}
         if selection["name"] in ("map-elites", "novelty"):
             tables["fitness"].append({"name": "descriptor", "settle": 0.05, "window": 0.1, "label": "axis"})
         if tables["encoding"]["name"] != "neat":
@@ -214,6 +227,8 @@ class Draw:
         development = {"cycles": cycles, "cycle_time": random.randint(2, 10) / 100}
         if random.random() < 0.3:
             development["reset"] = True
+        if random.random() < 0.3:
+            development |= {"draws": random.choice(("inherited", "individual")), "draws_between_lives": "new"}
         if random.random() < 0.2:
             development["control"] = random.choice(("no-change", "random-places", "shuffled-stress"))
         if random.random() < 0.1:

@@ -19,7 +19,7 @@ EXPERIMENT = """\
 evaluations = 1_000_000_000
 population = 6
 random_individuals = 1
-verify_front = true
+verify_front = "trials"
 
 [encoding]
 name = "voxel"

@@ -50,7 +50,8 @@ class History:
     refused: list  # by verification before the front
     seconds: list
     marks: list | None  # of the run's best robot, such as "artefact"; None if it was not verified
-    reborn: list  # whether it kept its score in each of the lives in which verification let it be born again
+    reborn: list  # whether it kept its score in each life to come in which development drew the same numbers
+    redrawn: list  # likewise in those in which it drew others
     scenarios: dict  # scores of the run's best robot by scenario
     axes: list | None  # of the run's map; None if it has no map
 
@@ -73,6 +74,11 @@ def history(shown, objective):
     better = max if objective.maximise else min
     scores = [objective.worst if generation["best"] is None else generation["best"] for generation in generations]
     verification = (shown["best"] or {}).get("verification")
+
+    def lives_to_come(kind):
+        trials = (verification or {}).get("trials", ())
+        return [trial["held"] for trial in trials if trial["trial"].startswith(f"{kind}-")]
+
     return History(
         generations=list(range(len(generations) + 1)),
         evaluations=[0, *(generation["evaluations"] for generation in generations)],
@@ -82,10 +88,11 @@ def history(shown, objective):
         qd_score=of_the_map("qd_score"),
         diverged=summed("diverged"),
         invalid=summed("invalid"),
-        refused=[a + b for a, b in zip(summed("artefact"), summed("passive"))],
+        refused=[sum(counts) for counts in zip(summed("artefact"), summed("lucky"), summed("passive"))],
         seconds=summed("wall_time"),
         marks=verification and verification["marks"],
-        reborn=[trial["held"] for trial in (verification or {}).get("trials", ()) if trial["trial"].startswith("reborn-")],
+        reborn=lives_to_come("reborn"),
+        redrawn=lives_to_come("redrawn"),
         scenarios=by_scenario(shown["best"], objective),
         axes=shown["map"] and shown["map"]["axes"],
     )

@@ -16,10 +16,11 @@ development counts as cost.
 
 Intervals of medians over seeds are by the percentile bootstrap, from {inference.RESAMPLES:,} resamples of the runs.
 
-Refused individuals lost their fitness in verification before the front (`[experiment] verify_front`), as artefacts or as
-passive. The best robot of a whole run, where it was verified (`[experiment] verify`), held, or is an artefact of the time step,
-passive, or both. If robots develop, it was also born three times more, with masses in slightly other places and with
-other random numbers; "best born again" counts those that were at least half as good in two of these lives.
+Refused individuals lost their fitness in verification before the front (`[experiment] verify_front`), as artefacts, as
+passive, or because they owed it to luck. The best robot of a whole run, where it was verified (`[experiment] verify`),
+held, or is an artefact of the time step, passive, or both. If robots develop, it was also born again, with masses in
+slightly other places, in lives in which development drew the same random numbers and in lives with new ones; the last
+two columns count those that were at least half as good in most of these lives.
 """
 
 TESTS = f"""\
@@ -99,14 +100,19 @@ def section(histories, objective, axis, against):
 
 def verified(runs):
     """Returns table cells that count, among the verified best robots, those without a mark, the artefacts and the
-    passive ones; and among those that were born again, those that kept their score in most of these lives."""
+    passive ones; and among those that were born again, those that kept their score in most of these lives, with the same
+    draws and with new ones."""
     marks = [history.marks for history in runs if history.marks is not None]
     if not marks:
-        return ["not verified", "-", "-", "-"]
+        return ["not verified", "-", "-", "-", "-"]
     counts = [marks.count([]), *(sum(mark in some for some in marks) for mark in ("artefact", "passive"))]
-    reborn = [history.reborn for history in runs if history.reborn]
-    kept = sum(2 * sum(lives) > len(lives) for lives in reborn)
-    return [*(f"{count} of {len(marks)}" for count in counts), f"{kept} of {len(reborn)}" if reborn else "-"]
+
+    def kept(lives):
+        lives = [each for each in lives if each]
+        return f"{sum(2 * sum(each) > len(each) for each in lives)} of {len(lives)}" if lives else "-"
+
+    born_again = [kept([run.reborn for run in runs]), kept([run.redrawn for run in runs])]
+    return [*(f"{count} of {len(marks)}" for count in counts), *born_again]
 
 
 def whole_runs(histories):
@@ -128,7 +134,7 @@ def whole_runs(histories):
             ]
         )
     header = ["", "generations", "evaluations", "spring evaluations", "diverged", "invalid", "refused", "hours"]
-    header += ["best held", "best is artefact", "best is passive", "best born again"]
+    header += ["best held", "best is artefact", "best is passive", "best kept, same draws", "best kept, new draws"]
     return f"## All runs, each to its end\n\n{table(header, rows)}"
 
 

@@ -14,6 +14,7 @@ COLUMNS = (
     "diverged",
     "invalid",
     "artefact",
+    "lucky",
     "passive",
     "wall_time",
     "map",
@@ -38,7 +39,9 @@ def pack(shown):
 def unpack(row):
     """Returns a row in the form of the output of `evodevo show --json`."""
     shown = {key: row[key] for key in KEYS}
-    columns = [row["generations"][column] for column in COLUMNS]
+    generations = row["generations"]
+    generations.setdefault("lucky", [0] * len(generations["evaluations"]))  # of rows of before there was this status
+    columns = [generations[column] for column in COLUMNS]
     shown["generations"] = [dict(zip(COLUMNS, values)) for values in zip(*columns, strict=True)]
     return shown
 

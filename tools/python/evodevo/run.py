@@ -15,7 +15,7 @@ from .body import Body
 from .errors import ArchiveError
 from .program import json_of, output_of
 
-FORMAT = 14  # of the archive
+FORMAT = 15  # of the archive
 
 
 def _gene_name(names, count, gene):
@@ -83,7 +83,7 @@ class Run:
     @functools.cached_property
     def generations(self):
         """A row for each generation: evaluations (so far), best and median of the first objective, numbers of newborns
-        that diverged, invalid, of individuals that became artefact or passive, clones, spring_evaluations, wall_time (s).
+        that diverged, invalid, of individuals that became artefact, lucky or passive, clones, spring_evaluations, wall_time (s).
         """
         table = self.query("SELECT * FROM generations ORDER BY generation").set_index("generation")
         unit = self.objectives.unit.iloc[0]
@@ -93,11 +93,11 @@ class Run:
     @functools.cached_property
     def individuals(self):
         """A row for each individual that ever lived, by id: born, died (missing while it lives), origin, parent, mate,
-        made_by, provenance, status, reason, ended_at (s), spring_evaluations, and a column for each objective and each
+        made_by, provenance, lives, measured, status, reason, ended_at (s), spring_evaluations, and a column for each objective and each
         measure, under its name. Those without a fitness have no scores. If a name is taken, a number follows it, as in
         distance_1; `objective_columns` has the names for the objectives."""
-        table = self.query("SELECT id, born, died, origin, parent, mate, made_by, provenance, status, reason, "
-                           "ended_at, spring_evaluations FROM individuals ORDER BY id").set_index("id")
+        table = self.query("SELECT id, born, died, origin, parent, mate, made_by, provenance, lives, measured, status, "
+                           "reason, ended_at, spring_evaluations FROM individuals ORDER BY id").set_index("id")
         table = table.astype({"died": "Int64", "parent": "Int64", "mate": "Int64", "ended_at": float})
         units, columns = {"ended_at": "s"}, []
         for kinds, rows, key in ((self.objectives, "scores", "objective"), (self.measures, "measured", "measure")):
@@ -122,10 +122,16 @@ class Run:
 
     @functools.cached_property
     def tests(self):
-        """The scores in each repeat of each scenario: individual, scenario, repeat, objective, value."""
-        return self.query("SELECT individual, scenarios.name AS scenario, repeat, objectives.name AS objective, value "
-                          "FROM tests JOIN scenarios USING (scenario) JOIN objectives ON position = objective "
-                          "ORDER BY individual, tests.scenario, repeat, tests.objective")
+        """The scores in each repeat of each scenario: individual, life, scenario, repeat, objective, value."""
+        return self.query("SELECT individual, life, scenarios.name AS scenario, repeat, objectives.name AS objective, "
+                          "value FROM tests JOIN scenarios USING (scenario) JOIN objectives ON position = objective "
+                          "ORDER BY individual, life, tests.scenario, repeat, tests.objective")
+
+    @functools.cached_property
+    def life_scores(self):
+        """The scores in each life of individuals that have had several: individual, life, objective, value."""
+        return self.query("SELECT individual, life, objectives.name AS objective, value FROM life_scores "
+                          "JOIN objectives ON position = objective ORDER BY individual, life, life_scores.objective")
 
     @functools.cached_property
     def verifications(self):
@@ -207,26 +213,26 @@ class Run:
             (at,) = self._row(at, "parent")
         return self.individuals.reindex(ids)
 
-    def life(self, individual):
-        """Returns the edits that development made to a robot, a row for each, in their order: cycle, operator, event,
+    def life(self, individual, life=1):
+        """Returns the edits that development made to a robot in one of its lives, a row for each, in their order: cycle, operator, event,
         spring (two numbers of masses) or mass, identity (of a mass, UInt64), cause, measure, unit, and so on; the columns
         are those of `evodevo life --json`. Simulates the development again with `program()`."""
-        edits = json_of("life", self.folder, "--individual", individual, "--json")["edits"]
+        edits = json_of("life", self.folder, "--individual", individual, "--life", life, "--json")["edits"]
         frame = pd.DataFrame(edits)
         if "identity" in frame:  # springs have none, and floats would not hold those of masses
             frame["identity"] = pd.array([edit.get("identity") for edit in edits], dtype="UInt64")
         return frame
 
-    def body(self, individual, matured=False):
-        """Returns the Body of an individual, as it was born or, if `matured`, after its development, which is then
-        simulated again with `program()`."""
-        options = ["--matured"] if matured else []
+    def body(self, individual, matured=False, life=1):
+        """Returns the Body of an individual, as it was born or, if `matured`, after its development in one of its lives,
+        which is then simulated again with `program()`."""
+        options = ["--matured", "--life", life] if matured else []
         return Body.from_json(json_of("body", self.folder, "--individual", individual, *options))
 
-    def motion(self, individual, seconds):
-        """Returns how a matured robot moves in the scene of the run for `seconds`: [frames] times since birth (s) and
+    def motion(self, individual, seconds, life=1):
+        """Returns how a robot that has matured in one of its lives moves in the scene of the run for `seconds`: [frames] times since birth (s) and
         [frames, masses, 3] positions (m), with a frame about every 0.01 s. Simulates it with `program()`."""
-        body = self.body(individual, matured=True)
+        body = self.body(individual, matured=True, life=life)
         with tempfile.TemporaryDirectory() as scratch:
             scratch = pathlib.Path(scratch)
             (scratch / "body.json").write_text(json.dumps(body.json), encoding="utf-8")

@@ -208,12 +208,13 @@ function livingOf(run, x, y, colour, name) {
   return [individuals, [column(front), stepped(line(`${name}front`, colour), x.better < 0 ? 1 : -1)]];
 }
 
-/** The statuses without a fitness, from the bottom of the chart to its top; the last two only if the run has any. */
+/** The statuses without a fitness, from the bottom of the chart to its top; the last three only if the run has any. */
 const lostStatuses = (run) =>
   [
     ["invalid", "--warn"],
     ["diverged", "--bad"],
     ["artefact", "--accent"],
+    ["lucky", "--born"],
     ["passive", "--soft"],
   ].filter(([name], i) => i < 2 || run.statuses[name] > 0);
 

@@ -9,7 +9,7 @@ import { Gallery } from "./gallery.js";
 import { migrantTables } from "./islands.js";
 import { Lineage } from "./lineage.js";
 import { NicheMaps } from "./niches.js";
-import { directionOf, hasUnit, listed, own, quantityText } from "./scores.js";
+import { directionOf, hasUnit, inLifeShown, listed, own, quantityText } from "./scores.js";
 import { linked, shellWord } from "./share.js";
 import { stillOf } from "./still.js";
 import { colourRuns, factTable, robotTable, TestTable, VerificationTable } from "./tables.js";
@@ -20,18 +20,23 @@ const { runs } = data;
 const isGallery = data.kind === "gallery";
 runs.forEach((run) => (run.label = run.folder ? `${run.folder.split("/").filter(Boolean).at(-1)}` : run.experiment));
 
-/** Returns the objectives of a robot with their units and, if there are several, their names; otherwise its status. */
+/** Returns the objectives of a robot in the life shown with their units and, if there are several, their names; otherwise
+ *  its status. */
 const scoreText = (run, robot) => {
-  const known = (run.objectives ?? []).filter(({ name }) => own(robot.objectives, name) !== undefined);
+  const scores = inLifeShown(robot);
+  const known = (run.objectives ?? []).filter(({ name }) => own(scores, name) !== undefined);
   const named = (objective) => (known.length > 1 ? `${objective.name} ` : "");
-  const texts = known.map((objective) => named(objective) + quantityText(robot.objectives[objective.name], objective));
+  const texts = known.map((objective) => named(objective) + quantityText(scores[objective.name], objective));
   return texts.length > 0 ? texts.join(", ") : robot.status;
 };
 const nameOf = (run, robot) => {
   const whose = runs.length > 1 ? `${run.label}: ` : "";
-  return isGallery ? `Robot ${robot.individual}` : `${whose}${robot.role}, individual ${robot.individual}`;
+  const life = robot.lives?.length > 1 ? `, life ${robot.life}` : "";
+  return isGallery ? `Robot ${robot.individual}` : `${whose}${robot.role}, individual ${robot.individual}${life}`;
 };
 const isElite = ({ robot }) => robot.role === "elite";
+/** Whether this is the first life of a robot that the page shows. */
+const isFirstLife = ({ run, robot }) => run.robots.find(({ individual }) => individual === robot.individual) === robot;
 const robots = runs
   .flatMap((run) =>
     run.robots.map((robot) => {
@@ -83,7 +88,7 @@ function factsOf(run) {
     fact(
       "Ended well",
       all > 0 ? `${share(run.statuses.ok, all)} %` : "–",
-      ["invalid", "diverged", "artefact", "passive"]
+      ["invalid", "diverged", "artefact", "lucky", "passive"]
         .filter((status, i) => i < 2 || run.statuses[status] > 0)
         .map((status) => `${run.statuses[status]} ${status}`)
         .join(", "),
@@ -143,7 +148,7 @@ function portraits(viewer) {
   const titled = (title, run) => (runs.length > 1 ? `${title}: ${run.label}` : title);
   const open = (run) => (individual) => openIndividual({ run, individual }, viewer);
   const figures = (isThere, Figure, title) =>
-    runs.filter(isThere).map((run) => new Figure(run, titled(title, run), robots, open(run)));
+    runs.filter(isThere).map((run) => new Figure(run, titled(title, run), robots.filter(isFirstLife), open(run)));
   return [
     ...figures(({ champions }) => champions.count > 0, Champions, "The best robot over the generations"),
     ...figures(({ lineage }) => lineage.length > 0, Lineage, "Where the robots come from"),
@@ -203,7 +208,7 @@ async function begin() {
     page.charts.draw();
     page.portraits = portraits(page.viewer);
     page.pictured = Promise.all(page.portraits.map((one) => one.draw())); // pictures may come later than the page
-    main.append(...page.portraits.map(({ root }) => root), robotTable(runs, robots, page.viewer), ...migrantTables(runs));
+    main.append(...page.portraits.map(({ root }) => root), robotTable(runs, robots, isFirstLife, page.viewer), ...migrantTables(runs));
   }
   main.append(experiments(), element("footer", { textContent: `evodevo ${data.evodevo}` }));
   addEventListener("hashchange", () => {

@@ -48,7 +48,7 @@ class NicheMap {
     this.columns = run.map.axes[0].bins;
     this.rows = run.map.axes[1]?.bins ?? 1;
     const own = robots.map((one, index) => [one, index]).filter(([one]) => one.run === run);
-    const indices = new Map(own.map(([one, index]) => [one.robot.individual, index]));
+    const indices = new Map(own.reverse().map(([one, index]) => [one.robot.individual, index])); // of their first lives
     this.cells = run.map.elites
       .map(({ cell: [column, row = 0], individual, value }) => ({
         column,

@@ -15,6 +15,9 @@ export const listed = (...texts) => texts.filter((text) => text !== "").join(", 
 /** Returns a note for an objective for which low values are good; an empty text for other scores. */
 export const directionOf = ({ maximise }) => (maximise === false ? "lower is better" : "");
 
+/** Returns the objectives of a robot in the life that the page shows of it. */
+export const inLifeShown = (robot) => robot.lives?.[robot.life - 1] ?? robot.objectives;
+
 export const age = { name: "age", unit: "generations", group: "Age", better: -1, of: (individual) => individual.age };
 
 /** Returns the objectives of all runs. Those with the same name and unit are one. `better` is 1 if high values are good,

@@ -1,7 +1,7 @@
 // The tables of a report: the robots, and the scores of the robots shown in each test.
 import { runColour } from "./colours.js";
 import { element, short } from "./elements.js";
-import { directionOf, listed, measuresOf, notesOf, objectivesOf, own, titled } from "./scores.js";
+import { directionOf, inLifeShown, listed, measuresOf, notesOf, objectivesOf, own, titled } from "./scores.js";
 
 const cell = (text, tag = "td") => element(tag, { textContent: text });
 
@@ -43,12 +43,13 @@ export function colourRuns(root) {
   root.querySelectorAll(".run-colour").forEach((swatch, i) => (swatch.style.background = runColour(i)));
 }
 
-/** Lists all robots of the page with their scores. They can be opened if there is a viewer. */
-export function robotTable(runs, robots, viewer) {
+/** Lists those robots of the page for which `isListed` holds, with their scores. They can be opened if there is a viewer. */
+export function robotTable(runs, robots, isListed, viewer) {
   const objectives = objectivesOf(runs);
   const measures = measuresOf(runs);
   const notes = notesOf(runs);
-  const rows = robots.map(({ run, robot }, i) =>
+  const listedOnes = [...robots.entries()].filter(([, one]) => isListed(one));
+  const rows = listedOnes.map(([i, { run, robot }]) =>
     element(
       "tr",
       {},
@@ -95,7 +96,7 @@ const noteText = (value, note) => (note.is_label && value !== undefined ? String
 /** Returns a note if an objective in the life shown differs from that in the archive. If the robot was tested in
  *  scenarios, the life shown is that of one test, and its note stands there. */
 function again(run, robot, objective) {
-  return run.filmed_scenario ? "" : asShown(run, robot, objective.name, objective.of(robot));
+  return run.filmed_scenario ? "" : asShown(run, robot, objective.name, own(inLifeShown(robot), objective.name));
 }
 
 /** Returns a note if a score in the life shown differs from `value`, that in the archive, by more than 1 %, for example
@@ -105,10 +106,11 @@ function asShown(run, robot, objective, value) {
   return shown === undefined || Math.abs(shown - value) <= 0.01 * Math.abs(value) ? "" : ` (as shown: ${short(shown)})`;
 }
 
-/** Returns the name of a test: that of its scenario and, if the scenario is repeated, the number of the repeat. */
-function testName({ scenario, repeat }, tests) {
+/** Returns the name of a test: that of its scenario and, if there are several, the numbers of the repeat and of the life. */
+function testName({ life, scenario, repeat }, tests) {
   const isRepeated = tests.some((other) => other.scenario === scenario && other.repeat > 1);
-  return isRepeated ? `${scenario}, repeat ${repeat}` : scenario;
+  const name = isRepeated ? `${scenario}, repeat ${repeat}` : scenario;
+  return tests.some((other) => other.life > 1) ? `life ${life}, ${name}` : name;
 }
 
 /** The scores in each test of the robots in the viewer; nothing if they were not tested in scenarios. */
@@ -179,7 +181,7 @@ function rows(tested) {
   const testOf = (robot, name) => robot.scenarios.find((test) => testName(test, robot.scenarios) === name);
   const isFilmed = ({ run, robot }, name) => {
     const test = testOf(robot, name);
-    return test?.scenario === run.filmed_scenario && test?.repeat === 1;
+    return test?.life === robot.life && test?.scenario === run.filmed_scenario && test?.repeat === 1;
   };
   const scoreIn = (one, name, objective) => {
     const value = own(testOf(one.robot, name)?.objectives, objective);

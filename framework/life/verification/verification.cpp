@@ -1,22 +1,25 @@
-#include "life/verification.hpp"
+#include "life/verification/verification.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <numeric>
 #include <stdexcept>
 
 #include "cpu/simulator.hpp"
 #include "experiment/device.hpp"
 #include "life/birth.hpp"
+#include "life/measurement/combining.hpp"
 #include "threads/parallel.hpp"
 
 namespace evodevo {
 namespace {
 
-constexpr double enough = 0.5;  ///< fraction of the fitness that an individual must keep, 1
-constexpr std::uint32_t perturbed_starts = 3, births = 3;
+constexpr std::uint32_t perturbed_starts = 3, least_new_lives = 3;
+/// Numbers of lives that selection never sees: of those that decide what comes to the front, and of those that tell
+/// what is to be expected. Lives that have been seen are at most most_lives.
+constexpr std::uint32_t first_deciding_life = 1u << 20, first_telling_life = 1u << 24;
+static_assert(most_lives < first_deciding_life);
 constexpr double more_settling = 10;  ///< delay of the windows in the trial settled, s
 constexpr std::int64_t step_parts = 4;
 
@@ -26,10 +29,16 @@ Method other_method(Method method) {
   return method == Method::velocity_verlet ? Method::symplectic_euler : Method::velocity_verlet;
 }
 
-Matured matured(const Evaluation& evaluation, std::span<const Champion> champions) {
+std::vector<Newborn> newborns_of(std::span<const Champion> champions) {
   std::vector<Newborn> newborns;
   for (const Champion& champion : champions) newborns.push_back(champion.newborn);
-  return evaluation.matured(evaluation.birth.of(newborns), unwatched);
+  return newborns;
+}
+
+/// Returns all lives of the champions, one champion after the other.
+Cohort matured(const Experiment& experiment, const Evaluation& evaluation, std::span<const Champion> champions) {
+  const std::vector<Newborn> lives = each_life(experiment, newborns_of(champions));
+  return evaluation.matured(evaluation.birth.in_all_scenes(lives), unwatched);
 }
 
 void still_muscles(Life& life) {
@@ -37,8 +46,8 @@ void still_muscles(Life& life) {
 }
 
 /// Returns those of the lives that have these indices.
-Matured only(const Matured& all, std::span<const std::size_t> indices) {
-  Matured some;
+Cohort only(const Cohort& all, std::span<const std::size_t> indices) {
+  Cohort some;
   const auto chosen = [&](const std::vector<Life>& lives) {
     std::vector<Life> copies;
     for (const std::size_t i : indices) copies.push_back(lives[i]);
@@ -49,37 +58,63 @@ Matured only(const Matured& all, std::span<const std::size_t> indices) {
   return some;
 }
 
-/// Returns a trial for each life that has been measured.
-std::vector<Trial> trials_of(const std::string& name, std::span<const Life> lives) {
-  std::vector<Trial> trials;
-  for (const Life& life : lives) {
-    trials.push_back({name, life.result.status, life.result.reason, std::nullopt});
-    if (life.result.status == Status::ok) trials.back().value = life.result.objectives.front();
+Trial trial_of(const std::string& name, const Result& result) {
+  Trial trial{name, result.status, result.reason, std::nullopt};
+  if (result.status == Status::ok) trial.value = result.objectives.front();
+  return trial;
+}
+
+/// Returns the conditions of lives to come, which differ from those seen even if the experiment has no birth noise.
+Conditions conditions_to_come(const Experiment& experiment) {
+  Conditions conditions(experiment);
+  if (conditions.birth_noise == 0) conditions.birth_noise = perturbation;
+  return conditions;
+}
+
+/// Lets champions live again from birth on. Returns a trial for each. `number` counts the lives to come from 1.
+std::vector<Trial> reborn(const Experiment& experiment, Simulator& simulator, std::span<const Champion> champions,
+                          bool redrawn, std::uint32_t number) {
+  const Evaluation evaluation(experiment, simulator, conditions_to_come(experiment));
+  std::vector<Newborn> newborns;
+  for (Newborn newborn : newborns_of(champions)) {
+    const std::uint32_t seen = newborn.life + newborn.lives - 1;
+    newborn.records.clear();
+    // the draws of a life that has been seen, or others
+    newborn.life = (number - 1) % seen + 1;
+    newborn.lives = 1;
+    Newborn& life = newborns.emplace_back(each_life(experiment, {&newborn, 1}).front());
+    life.life = first_telling_life + number;
+    if (redrawn) life.draws = life.life;
   }
+  Cohort cohort = evaluation.matured(evaluation.birth.in_all_scenes(newborns), unwatched);
+  evaluation.measurement.run(cohort, unwatched);
+  const std::string name = (redrawn ? redrawn_trial : reborn_trial) + std::to_string(number);
+  std::vector<Trial> trials;
+  for (const Life& life : cohort.lives) trials.push_back(trial_of(name, life.result));
   return trials;
 }
 
-/// Lets champions live again from birth, perturbed, with other random numbers. Returns a trial for each.
-std::vector<Trial> reborn(const Experiment& experiment, Simulator& simulator, std::span<const Champion> champions,
-                          std::uint32_t start) {
-  Conditions perturbed(experiment);
-  perturbed.perturbed_birth = start;
-  const Evaluation evaluation(experiment, simulator, perturbed);
-  std::vector<Newborn> newborns;  // without records, and of a generation that no run reaches
-  for (const Champion& champion : champions)
-    newborns.push_back({.id = champion.newborn.id,
-                        .generation = std::numeric_limits<std::uint32_t>::max() - start,
-                        .genome = champion.newborn.genome,
-                        .life = start + 1});
-  Matured matured = evaluation.matured(evaluation.birth.of(newborns), unwatched);
-  evaluation.measurement.run(matured, unwatched);
-  return trials_of("reborn-" + std::to_string(start + 1), matured.lives);
+/// The trial that finds individuals whose fitness was luck.
+std::vector<Trial> new_lives(const Experiment& experiment, Simulator& simulator, std::span<const Champion> champions) {
+  std::vector<Newborn> newborns = newborns_of(champions);
+  for (Newborn& newborn : newborns) {
+    newborn.life = first_deciding_life + newborn.lives;  // others if the champion has lived again since
+    newborn.lives = std::max(newborn.lives, least_new_lives);
+    newborn.records.clear();
+  }
+  std::vector<Trial> trials;
+  const Evaluation evaluation(experiment, simulator, conditions_to_come(experiment));
+  for (const Result& result : evaluation.evaluate_in(1, newborns, unwatched))
+    trials.push_back(trial_of(new_lives_trial, result));
+  return trials;
 }
 
 /// Repeats final evaluations of matured champions, each time with one thing changed. Several threads may use it.
 class Repetition {
  public:
-  Repetition(const Experiment& experiment, Matured matured) : experiment_(experiment), matured_(std::move(matured)) {}
+  /// `matured` has all lives of the champions, one champion after the other.
+  Repetition(const Experiment& experiment, std::vector<Newborn> champions, Cohort matured)
+      : experiment_(experiment), champions_(std::move(champions)), matured_(std::move(matured)) {}
 
   /// Applies `change` to a copy of every matured life and repeats its final evaluation. Returns a trial for each
   /// champion.
@@ -94,11 +129,18 @@ class Repetition {
         evaluation.simulation.choose_step(lives[i]);
       });
     };
-    Matured matured = matured_;
+    Cohort matured = matured_;
     change_all(matured.lives);
     for (auto& [scenario, lives] : matured.in_scenarios) change_all(lives);
     evaluation.measurement.run(matured, unwatched);
-    return trials_of(name, matured.lives);
+    std::vector<Trial> trials;
+    auto next = matured.lives.begin();
+    for (const Newborn& champion : champions_) {
+      std::vector<Result> lives;
+      for (std::uint32_t i = 0; i < champion.lives; ++i) lives.push_back(std::move((next++)->result));
+      trials.push_back(trial_of(name, of_all_lives(experiment_, std::move(lives), champion.life)));
+    }
+    return trials;
   }
 
   /// The trials that find artefacts of the step and the method.
@@ -130,7 +172,8 @@ class Repetition {
   static void unprepare(Life& life) { life.living.preparation = nullptr; }  // it belongs to the run's simulator
 
   const Experiment& experiment_;
-  const Matured matured_;
+  const std::vector<Newborn> champions_;
+  const Cohort matured_;
   const Conditions as_in_the_run_{experiment_};
 };
 
@@ -170,12 +213,6 @@ ExactSimulators exact_simulators_on(bool cpu, const Experiment& experiment) {
   return {simulator(method), simulator(other_method(method))};
 }
 
-const Trial* find(const Verification& verification, const std::string& name) {
-  const auto found = std::find_if(verification.trials.begin(), verification.trials.end(),
-                                  [&](const Trial& trial) { return trial.name == name; });
-  return found == verification.trials.end() ? nullptr : &*found;
-}
-
 }  // namespace
 
 bool is_verifiable(const Experiment& experiment) {
@@ -184,10 +221,10 @@ bool is_verifiable(const Experiment& experiment) {
 }
 
 std::vector<Verification> verify(const Experiment& experiment, Simulator& simulator,
-                                 std::span<const Champion> champions) {
+                                 std::span<const Champion> champions, VerifiedLives lives) {
   const ExactSimulators exact = exact_simulators_on(true, experiment);
   const Evaluation run(experiment, simulator);
-  const Repetition repetition(experiment, matured(run, champions));
+  const Repetition repetition(experiment, newborns_of(champions), matured(experiment, run, champions));
   std::vector<Repeat> repeats = {
       [&] { return repetition.with("again", simulator, repetition.as_in_the_run(), [](Life&) {}); },
       [&] { return repetition.quarter_step(*exact.same_method); },
@@ -200,9 +237,13 @@ std::vector<Verification> verify(const Experiment& experiment, Simulator& simula
     });
   repeats.push_back([&] { return repetition.no_muscles(simulator); });
   repeats.push_back([&] { return repetition.settled(simulator); });
-  if (experiment.development.cycles > 0)  // otherwise, it would be the same as perturbed-1 to -3
-    for (std::uint32_t start = 0; start < births; ++start)
-      repeats.push_back([&, start] { return reborn(experiment, simulator, champions, start); });
+  const bool develop = experiment.development.cycles > 0;
+  for (const bool redrawn : {false, true}) {
+    // robots that do not develop are born as in perturbed-1 to -3, unless with noise, and draw nothing
+    const bool differ = develop || (experiment.birth_noise > 0 && !redrawn);
+    for (std::uint32_t birth = 1; differ && lives == VerifiedLives::seen_and_to_come && birth <= births; ++birth)
+      repeats.push_back([&, redrawn, birth] { return reborn(experiment, simulator, champions, redrawn, birth); });
+  }
   return verifications(champions, at_once(repeats));
 }
 
@@ -217,27 +258,41 @@ ExactSimulators exact_simulators(const Experiment& experiment, const Simulator& 
 
 std::vector<Verification> verify_marks(const Experiment& experiment, Simulator& simulator, const ExactSimulators& exact,
                                        std::span<const Champion> champions, std::size_t most_at_once) {
-  using Part = std::function<std::vector<Trial>(const Repetition&)>;
-  const Part without_muscles = [&](const Repetition& repetition) { return repetition.no_muscles(simulator); };
-  const Part later = [&](const Repetition& repetition) { return repetition.settled(simulator); };
-  const Part in_quarters = [&](const Repetition& repetition) { return repetition.quarter_step(*exact.same_method); };
-  const Part otherwise = [&](const Repetition& repetition) { return repetition.other_step(*exact.other_method); };
+  using Part = std::function<std::vector<Trial>(const Repetition&, std::span<const Champion>)>;
+  const Part without_muscles = [&](const Repetition& repetition, auto) { return repetition.no_muscles(simulator); };
+  const Part later = [&](const Repetition& repetition, auto) { return repetition.settled(simulator); };
+  const Part in_quarters = [&](const Repetition& repetition, auto) {
+    return repetition.quarter_step(*exact.same_method);
+  };
+  const Part otherwise = [&](const Repetition& repetition, auto) { return repetition.other_step(*exact.other_method); };
+  const Part anew = [&](const Repetition&, std::span<const Champion> some) {
+    return new_lives(experiment, simulator, some);
+  };
   const bool maximise = experiment.objectives.front().maximise;
   const Evaluation run(experiment, simulator);
-  const Matured all = matured(run, champions);
+  const Cohort all = matured(experiment, run, champions);
   std::vector<Verification> found = verifications(champions, {});
   std::vector<std::size_t> left(champions.size());  // the champions without a mark
   std::iota(left.begin(), left.end(), std::size_t{0});
   const auto repeat = [&](const std::vector<Part>& parts) {
     if (left.empty()) return;
-    const Repetition repetition(experiment, only(all, left));
+    std::vector<Champion> some;
+    std::vector<std::size_t> lives;  // of these champions
+    for (std::size_t i = 0, first = 0; i < champions.size(); first += champions[i++].newborn.lives) {
+      if (!std::ranges::binary_search(left, i)) continue;
+      some.push_back(champions[i]);
+      for (std::size_t life = 0; life < champions[i].newborn.lives; ++life) lives.push_back(first + life);
+    }
+    const Repetition repetition(experiment, newborns_of(some), only(all, lives));
     std::vector<Repeat> repeats;
-    for (const Part& part : parts) repeats.push_back([&] { return part(repetition); });
+    for (const Part& part : parts) repeats.push_back([&] { return part(repetition, some); });
     for (std::vector<Trial>& trials : at_once(repeats))
       for (std::size_t i = 0; i < left.size(); ++i) found[left[i]].trials.push_back(std::move(trials[i]));
     std::erase_if(left, [&](std::size_t i) { return first_mark(found[i], maximise).has_value(); });
   };
-  repeat({without_muscles, later});  // about a tenth of the work of the others
+  std::vector<Part> first = {without_muscles, later};  // about a tenth of the work of those in double precision
+  if (experiment.verify_front == VerifyFront::lives) first.push_back(anew);
+  repeat(first);
   if (left.size() <= most_at_once) {
     repeat({in_quarters, otherwise});
   } else {
@@ -245,65 +300,6 @@ std::vector<Verification> verify_marks(const Experiment& experiment, Simulator& 
     repeat({otherwise});
   }
   return found;
-}
-
-bool held(const Verification& verification, const Trial& trial, bool maximise) {
-  if (!trial.value) return false;
-  const double lost = maximise ? verification.fitness - *trial.value : *trial.value - verification.fitness;
-  return lost <= (1 - enough) * std::abs(verification.fitness);
-}
-
-namespace {
-
-/// Returns the marks of an individual, each with the first trial that shows it, in the order of verify_marks().
-std::vector<Mark> all_marks(const Verification& verification, bool maximise) {
-  std::vector<Mark> marks;
-  const auto mark_by = [&](const char* name, Status status, const auto& shows) {
-    const Trial* trial = find(verification, name);
-    const bool is_marked = !marks.empty() && marks.back().status == status;
-    if (trial != nullptr && !is_marked && shows(*trial)) marks.push_back({status, *trial});
-  };
-  const auto is_lost = [&](const Trial& trial) { return !held(verification, trial, maximise); };
-  const double half = enough * verification.fitness;
-  if (maximise && verification.fitness > 0) {
-    mark_by("no-muscles", Status::passive, [&](const Trial& trial) { return trial.value && *trial.value > half; });
-    mark_by("settled", Status::passive, [&](const Trial& trial) { return trial.value && *trial.value < half; });
-  }
-  mark_by("quarter-step", Status::artefact, is_lost);
-  mark_by("other-method", Status::artefact, is_lost);
-  return marks;
-}
-
-}  // namespace
-
-std::vector<std::string> marks(const Verification& verification, bool maximise) {
-  std::vector<std::string> names;
-  for (const Mark& mark : all_marks(verification, maximise)) names.emplace_back(name(mark.status));
-  std::ranges::sort(names);
-  return names;
-}
-
-std::optional<Mark> first_mark(const Verification& verification, bool maximise) {
-  std::vector<Mark> marks = all_marks(verification, maximise);
-  return marks.empty() ? std::nullopt : std::optional(std::move(marks.front()));
-}
-
-std::string marks_text(const Verification& verification, bool maximise) {
-  std::string text;
-  for (const std::string& mark : marks(verification, maximise)) text += (text.empty() ? "" : ", ") + mark;
-  return text.empty() ? "verified" : text;
-}
-
-std::string verdict_text(const Verification& verification, bool maximise) {
-  std::size_t others = 0, kept = 0;
-  for (const Trial& trial : verification.trials) {
-    if (!trial.name.starts_with("reborn")) continue;
-    ++others;
-    kept += held(verification, trial, maximise);
-  }
-  const std::string marks = marks_text(verification, maximise);
-  if (others == 0) return marks;
-  return marks + " in this life, kept in " + std::to_string(kept) + " of " + std::to_string(others) + " others";
 }
 
 }  // namespace evodevo
