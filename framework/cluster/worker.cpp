@@ -29,7 +29,7 @@ message::Hello hello_of(const Experiment& experiment, Simulator& simulator) {
     for (const Objective& score : *scores)
       hello.scores.push_back(std::string(score.maximise ? "more " : "less ") + score.name + " in " + score.unit +
                              " as " + name(score.role));
-  hello.verified_at_once = verified_at_once(simulator);
+  hello.verified_at_once = verified_at_once(experiment, simulator);
   const std::optional<DeviceUse> gpus = simulator.device_use();
   // a second job of a processor fills the time in which few lives of the first are left
   hello.jobs = gpus ? static_cast<std::uint64_t>(simulator.concurrency()) : 2;

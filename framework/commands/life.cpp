@@ -188,7 +188,7 @@ class LifeReport {
     fmt::print(std::cout, "individual {}: born with {} masses and {} springs, matured with {} and {}; {}{}\n",
                individual_.id, born_.masses.size(), born_.springs.size(), matured_.masses.size(),
                matured_.springs.size(), name(result.status), result.reason.empty() ? "" : ": " + result.reason);
-    if (individual_.result.lives.size() > 1) std::cout << "in life " << life_ << '\n';
+    if (individual_.lives > 1) std::cout << "in life " << life_ << '\n';
     if (scenario_ != nullptr) std::cout << "in the scenario \"" << scenario_->name << "\"\n";
     switch (experiment_.development.control) {
       case Control::random_places:

@@ -13,7 +13,9 @@ std::size_t lives_at_once(Simulator& simulator) {
   return most - std::min(most - 1, gpus->bodies);
 }
 
-std::size_t verified_at_once(Simulator& simulator) { return std::max<std::size_t>(1, lives_at_once(simulator) / 2); }
+std::size_t verified_at_once(const Experiment& experiment, Simulator& simulator) {
+  return std::max<std::size_t>(1, lives_at_once(simulator) / (2 * static_cast<std::size_t>(experiment.lives)));
+}
 
 std::vector<Evaluated> LocalEvaluator::evaluate(std::span<const Newborn> newborns, const Progress& progress) {
   return without_records(newborns, evaluation_.evaluate(newborns, progress));

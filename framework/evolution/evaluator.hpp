@@ -56,9 +56,9 @@ class Evaluator {
 /// About the number of lives that keep a simulator busy: one for each thread of a CPU, a hundred for a GPU, less
 /// those that it simulates already, such as those of other runs of this process.
 std::size_t lives_at_once(Simulator& simulator);
-/// About the number of champions that one process verifies in the time that one takes. Two of the four trials take
-/// nearly all of the time.
-std::size_t verified_at_once(Simulator& simulator);
+/// About the number of champions that one process verifies in the time that one takes, each in all its lives. Two of
+/// the four trials take nearly all of the time.
+std::size_t verified_at_once(const Experiment& experiment, Simulator& simulator);
 
 /// Evaluates and verifies in this process. Several threads may use it. Experiment and simulator must outlive it.
 class LocalEvaluator final : public Evaluator {
@@ -75,7 +75,7 @@ class LocalEvaluator final : public Evaluator {
   void forget_records() override;
   std::vector<Verification> verify(std::span<const Champion> champions,
                                    std::span<const std::uint32_t> provenances) override;
-  std::size_t verified_at_once() const override { return evodevo::verified_at_once(simulator_); }
+  std::size_t verified_at_once() const override { return evodevo::verified_at_once(experiment_, simulator_); }
   Workers& workers() override { return simulator_.workers(); }
   PhaseTimes phase_times() const override { return evaluation_.phase_times(); }
 

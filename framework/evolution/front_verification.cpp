@@ -6,9 +6,20 @@
 #include "base/text.hpp"
 #include "evolution/clones.hpp"
 #include "evolution/selection_table.hpp"
+#include "life/measurement/combining.hpp"
 
 namespace evodevo {
 namespace {
+
+/// Returns an individual with those of its lives that were measured last, and its fitness in them.
+Champion champion_of(const Individual& individual, const Experiment& experiment) {
+  const std::vector<std::vector<double>>& lives = individual.result.lives;
+  const std::ptrdiff_t last = std::min<std::ptrdiff_t>(experiment.lives, std::ssize(lives));
+  Newborn newborn = newborn_of(individual);
+  newborn.lives = static_cast<std::uint32_t>(last);
+  newborn.life = individual.lives - newborn.lives + 1;
+  return {std::move(newborn), objectives_of({lives.end() - last, lives.end()}, experiment).front()};
+}
 
 void take_fitness(Individual& individual, const Refusal& refusal) {
   Result& result = individual.result;
@@ -73,7 +84,7 @@ void FrontVerification::verify_front(const std::vector<Ranked>& line) {
       verified_[individual->id] = std::nullopt;
       continue;
     }
-    champions.push_back({newborn_of(*individual), individual->result.objectives.front()});
+    champions.push_back(champion_of(*individual, experiment_));
     provenances.push_back(*provenance);
   }
   if (champions.empty()) return;

@@ -143,7 +143,9 @@ void check_resumable(const Archive& archive, const Experiment& experiment) {
   for (const Individual& individual : population) {
     check_genes(archive, experiment, individual);
     check_scores(archive, experiment, individual);
-    archive.lives(individual.id);
+    Newborn newborn = newborn_of(individual);
+    newborn.records = archive.lives(individual.id);
+    check_lives(archive, experiment, newborn);
   }
   check_notes(archive, experiment);
   archive.memory();

@@ -20,6 +20,11 @@ std::size_t cohorts_for(std::size_t newborns, std::size_t most) {
                                  most);
 }
 
+std::size_t number_of_lives(std::span<const Newborn> newborns) {
+  return std::accumulate(newborns.begin(), newborns.end(), std::size_t{0},
+                         [](std::size_t sum, const Newborn& newborn) { return sum + newborn.lives; });
+}
+
 /// Returns `count` newborns of a cohort, which keeps what is left of them.
 Cohort taken(Cohort& from, std::size_t first, std::size_t count) {
   const auto of = [&](std::vector<Life>& lives) {
@@ -45,8 +50,7 @@ Evaluation::Evaluation(const Experiment& experiment, Simulator& simulator, const
       experiment_(experiment) {}
 
 std::vector<Result> Evaluation::evaluate(std::span<const Newborn> newborns, const Progress& progress) const {
-  std::size_t lives = 0;
-  for (const Newborn& newborn : newborns) lives += newborn.lives;
+  const std::size_t lives = number_of_lives(newborns);
   const auto most = static_cast<std::size_t>(simulation.simulator().concurrency());
   return evaluate_in(std::min(cohorts_for(lives, most), std::max<std::size_t>(1, newborns.size())), newborns, progress);
 }
@@ -57,7 +61,8 @@ std::vector<Result> Evaluation::evaluate_in(std::size_t cohorts, std::span<const
   std::vector<Result> results(newborns.size());
   std::vector<std::shared_ptr<const void>> announced;  // of each cohort until it has ended
   for (std::size_t i = 0; i < cohorts; ++i)
-    announced.push_back(simulation.simulator().announce(begin(i + 1) - begin(i)));
+    announced.push_back(
+        simulation.simulator().announce(number_of_lives(newborns.subspan(begin(i), begin(i + 1) - begin(i)))));
   std::mutex progress_mutex;
   std::vector<double> done(cohorts, 0.0);
   const int first = Priority::of_this_thread();

@@ -26,12 +26,14 @@ std::vector<Newborn> each_life(const Experiment& experiment, std::span<const New
   std::vector<Newborn> all;
   for (const Newborn& newborn : newborns)
     for (std::uint32_t i = 0; i < newborn.lives; ++i) {
-      Newborn& one = all.emplace_back(newborn);
-      one.life += i;
-      one.lives = 1;
-      one.records.clear();
+      const std::uint32_t life = newborn.life + i;
+      Newborn& one = all.emplace_back(Newborn{.id = newborn.id,
+                                              .generation = newborn.generation,
+                                              .genome = newborn.genome,
+                                              .recorded_in = newborn.recorded_in,
+                                              .life = life,
+                                              .draws = anew ? life : 1});
       if (i < newborn.records.size()) one.records = {newborn.records[i]};
-      one.draws = anew ? one.life : 1;
     }
   return all;
 }

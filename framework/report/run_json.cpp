@@ -215,6 +215,7 @@ Json individual_json(const Archive& archive, const ArchivedIndividual& individua
           {"age", last_age(individual, generations.empty() ? 0 : generations.back().generation)},
           {"status", name(individual.result.status)},
           {"objectives", objectives_json(objectives, individual.result.objectives)},
+          {"lived", individual.lives},
           {"lives", std::move(lives)},
           {"measures", measures_json(archive, individual.id)},
           {"notes", notes_json(archive, individual.id)},

@@ -91,7 +91,8 @@ class SmallRun {
       const std::atomic<bool> stop = false;
       const TimeSpent time = evolve(experiment_, *simulator, archive, stop, {});
       record_time_spent(archive, time);
-      archive.add_verifications({{archive.best(1).front(), 0.3, {{"again", Status::ok, "", 0.3}}}});
+      const ArchivedIndividual best = archive.known_individual(archive.best(1).front());
+      archive.add_verifications({{best.id, best.result.objectives[0], {{"again", Status::ok, "", 0.3}}}});
     }
     record_ = bytes_of(folder_ / "run.sqlite");
   }

@@ -104,6 +104,8 @@ TEST_F(ArchiveTest, TheRefusedLoseTheirScoresWhenTheirGenerationIsCommitted) {
   {
     Archive archive = created();
     archive.commit({.newborns = {elder}, .summary = {.generation = 0, .evaluations = 1}});
+    Archive::annotate(folder_).add_verifications({{0, 0.5, of_elder.trials}});
+    EXPECT_FALSE(archive.verification(0).has_value()) << "that was another fitness";
     Archive::annotate(folder_).add_verifications({of_elder});
     EXPECT_TRUE(archive.verification(0).has_value());
     archive.commit({.newborns = {newborn},

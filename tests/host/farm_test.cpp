@@ -158,16 +158,30 @@ const std::vector<std::string> many{"experiment.evaluations=60", "experiment.pop
 const std::vector<std::string> verified{many[0], many[1], "experiment.verify_front=trials",
                                         "materials.bone.stiffness=3e5", "simulation.unstable=run"};
 
+/// The number of individuals that were not evaluated, because there was one of the same genome and blocks: a newborn
+/// before them in their generation, or a member of the population that had a fitness.
+std::uint64_t twins_in(const Archive& archive) {
+  std::vector<ArchivedIndividual> all;
+  std::uint64_t twins = 0;
+  for (std::uint32_t id = 0; const auto one = archive.individual(id); ++id) {
+    twins += std::ranges::any_of(all, [&](const ArchivedIndividual& other) {
+      const bool is_member = other.result.status == Status::ok && (!other.died || *other.died >= one->born);
+      return other.genome == one->genome && (other.born == one->born || is_member);
+    });
+    all.push_back(*one);
+  }
+  return twins;
+}
+
 TEST_F(FarmRuns, GiveTheSameForAnyNumberOfRanksHoweverFastTheyAre) {
   const testing::FinishedRun alone(testing::small(many));
   for (const int count : {1, 2, 5, 64}) {
     testing::expect_same_runs(alone.archive, run(std::to_string(count), count, many));
+    std::uint64_t robots = 0;
+    for (const Share& share : shares_) robots += share.robots;
+    EXPECT_EQ(robots + twins_in(alone.archive), 60u);
     EXPECT_EQ(shares_.size(), static_cast<std::size_t>(count));
   }
-  run("individual", 3, {many[0], many[1], "development.draws=individual"});  // in which no twin takes over scores
-  std::uint64_t robots = 0;
-  for (const Share& share : shares_) robots += share.robots;
-  EXPECT_EQ(robots, 60u);
   const auto wait = [](LocalChannel&) { std::this_thread::sleep_for(std::chrono::milliseconds(100)); };
   testing::expect_same_runs(alone.archive, run("slow", 3, many, {2, wait}));
   EXPECT_THAT(given_up_, ::testing::IsEmpty());
@@ -240,6 +254,14 @@ TEST_F(FarmRuns, OfMixedRanksKeepWhatEachOfThemFinds) {
     }
   }
   EXPECT_GT(std::min({scored[0], scored[1], recorded, refused}), 0);
+}
+
+TEST_F(FarmRuns, OfMixedRanksLetNobodyLiveAgain) {
+  LocalRanks ranks(2, {many[0], many[1], "experiment.birth_noise=0.01", "selection.remeasure=1"}, {}, {1});
+  EXPECT_THAT(testing::refusal<InputError>([&] {
+                Farm(ranks.experiment(), ranks.simulator(), ranks.channel(), {}, {.mixed = true, .patience = patience});
+              }),
+              testing::naming("--mixed", "selection.remeasure = 1"));
 }
 
 TEST_F(FarmRuns, OfMixedRanksAskThoseThatCanRepeatALifeAndEndWhenNoneIsLeft) {

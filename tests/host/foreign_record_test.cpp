@@ -36,7 +36,8 @@ class ForeignRecord : public ::testing::Test {
     std::atomic<bool> stop = false;
     evolve(experiment, *simulator, archive, stop,
            Observer{.generation_done = [&](const Summary& summary) { stop = summary.generation == 1; }});
-    archive.add_verifications({{archive.best(1).front(), 0.3, {{"again", Status::ok, "", 0.3}}}});
+    const ArchivedIndividual best = archive.known_individual(archive.best(1).front());
+    archive.add_verifications({{best.id, best.result.objectives[0], {{"again", Status::ok, "", 0.3}}}});
     for (const std::uint32_t id : archive.best(12))
       if (const auto lives = archive.lives(id); !lives.empty() && !lives[0].empty()) recorded_ = id;
   }
@@ -181,6 +182,13 @@ TEST_F(ForeignRecord, WhatDoesNotFitTogetherIsNamed) {
       {"UPDATE scores SET objective = 7 WHERE objective = 1", "scores.objective"},
       {"UPDATE objectives SET position = 7 WHERE position = 1", "objectives.position"},
       {"UPDATE provenances SET provenance = 7", "provenances.provenance"},
+      {"UPDATE individuals SET lives = 2 WHERE died IS NULL", "has had 2 lives"},
+      {"UPDATE individuals SET lives = 0", "individuals.lives"},
+      {"UPDATE individuals SET measured = 99", "individuals.measured"},
+      {"INSERT INTO life_scores SELECT id, 1, 0, 1 FROM individuals WHERE died IS NULL", "incomplete"},
+      {"INSERT INTO life_scores SELECT id, 2, 0, 1 FROM individuals WHERE died IS NULL", "life_scores.life"},
+      {"INSERT INTO lives SELECT individual, 2, record FROM lives", "records of 2 lives"},
+      {"INSERT INTO lives SELECT individual, 3, record FROM lives", "lives.life"},
   };
   ASSERT_TRUE(change("DELETE FROM provenances; DELETE FROM verifications"));
   EXPECT_THAT(refusal_by("show", {"--json"}), HasSubstr("provenances"));

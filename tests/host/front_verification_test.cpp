@@ -110,7 +110,10 @@ TEST(LivesAtOnce, AreThoseThatADeviceStillHasRoomFor) {
   for (const auto& [bodies, lives] : {std::pair<std::size_t, std::size_t>{0, 200}, {150, 50}, {199, 1}, {5000, 1}}) {
     BusyDevice device(bodies);
     EXPECT_EQ(lives_at_once(device), lives);
-    EXPECT_EQ(verified_at_once(device), std::max<std::size_t>(1, lives / 2));
+    Experiment experiment;
+    EXPECT_EQ(verified_at_once(experiment, device), std::max<std::size_t>(1, lives / 2));
+    experiment.lives = 5;
+    EXPECT_EQ(verified_at_once(experiment, device), std::max<std::size_t>(1, lives / 10)) << "each in all its lives";
   }
   const auto cpu = make_cpu_simulator({}, {}, 3);
   EXPECT_EQ(lives_at_once(*cpu), 3u);

@@ -145,7 +145,8 @@ struct Named final : Operator {
 TEST(Loader, NoParameterTakesAKeyOfTheHost) {
   EXPECT_THAT(refusal("reserved"), naming("mutation operator \"nothing\"", "parameter \"every\"", "rename"));
   Named op;
-  for (const char* key : {"name", "mass", "probability", "from", "to", "every", "label", "over"}) {
+  for (const char* key :
+       {"name", "mass", "probability", "from", "to", "every", "label", "over", "over_lives", "remeasure"}) {
     op.name = key;
     EXPECT_EQ(taken_name(op), key);
   }

@@ -94,6 +94,24 @@ class OfASmallRun(unittest.TestCase):
         self.assertEqual(list(matured.identities), list(born.identities))  # no mass comes or goes
         self.assertEqual(evodevo.Body.from_json(matured.json).identities.dtype, np.uint64)
 
+    def test_lives_are_named_by_their_number(self):
+        lives = ("--set", "experiment.lives=3", "--set", "experiment.birth_noise=0.01")
+        run = evodevo.Run(self.make_run(options=lives))
+        champion = run.best().index[0]
+        scores = run.life_scores
+        own = scores[(scores["individual"] == champion) & (scores["objective"] == "distance")]
+        self.assertEqual(list(own["life"]), [1, 2, 3])
+        self.assertAlmostEqual(own["value"].mean(), run.best()["distance"].iloc[0], places=12)
+        self.assertEqual(run.individuals.loc[champion, "lives"], 3)
+        shown = json.loads(call("show", run.folder, "--individual", champion, "--json"))["lives"]
+        self.assertEqual(list(own["value"]), [life["distance"] for life in shown])
+        bodies = [run.body(champion, matured=True, life=life) for life in (1, 2, 3)]
+        self.assertFalse(np.array_equal(bodies[0].positions, bodies[1].positions))
+        self.assertTrue(np.array_equal(run.motion(champion, 0.1, life=3)[1][0], bodies[2].positions))
+        self.assertGreater(len(run.life(champion, life=2)), 0)
+        with self.assertRaisesRegex(ValueError, "life = 2.*matured=True"):
+            run.body(champion, life=2)
+
     def test_bodies_read_back_as_they_were_printed(self):
         champion = self.run_.best().index[0]
         for options in ([], ["--matured"]):

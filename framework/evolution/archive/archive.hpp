@@ -140,7 +140,7 @@ class Archive {
   void commit(const FinishedGeneration& generation);
 
   /// Adds verifications. They replace earlier verifications of the same individuals. Leaves out those of individuals
-  /// that have lost their fitness since they were chosen.
+  /// that have lost their fitness, or have another, since they were chosen.
   void add_verifications(const std::vector<Verification>& verifications);
 
   const std::filesystem::path& folder() const;

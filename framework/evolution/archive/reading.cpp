@@ -36,6 +36,13 @@ std::optional<double> seconds_in(const std::string& text) {
   return whole && seconds >= 0 && std::isfinite(seconds) ? std::optional(seconds) : std::nullopt;
 }
 
+/// Returns the reason of a failure without the number of the life that failed, as in "life 2: ".
+std::string without_life(const std::string& reason) {
+  const std::size_t number = std::string_view("life ").size(), end = reason.find_first_not_of("0123456789", number);
+  const bool names_life = reason.starts_with("life ") && end != number && reason.compare(end, 2, ": ") == 0;
+  return names_life ? reason.substr(end + 2) : reason;
+}
+
 std::int64_t count_of(const RunDatabase& run, const std::string& table) {
   Statement row(run, table, "SELECT count(*) FROM " + table);
   row.step();
@@ -353,7 +360,7 @@ std::vector<Failure> Archive::failures() const {
                 "GROUP BY status, reason ORDER BY min(id)");
   while (row.step()) {
     const std::string status = name(status_in(row, 0)), reason = line_or_empty(row, 1);
-    const std::string alike = reason.substr(0, reason.find_first_of("0123456789"));
+    const std::string cause = without_life(reason), alike = cause.substr(0, cause.find_first_of("0123456789"));
     Failure& failure = failures.try_emplace({status, alike}, Failure{status, reason}).first->second;
     failure.count += row.integer(2, 0, no_limit);
     failure.varies |= failure.reason != reason;
@@ -381,17 +388,6 @@ ArchivedIndividual Archive::known_individual(std::uint32_t id) const {
   auto known = individual(id);
   if (!known) refuse("it refers to individual " + std::to_string(id) + ", which it does not have");
   return std::move(*known);
-}
-
-std::vector<std::uint32_t> Archive::best(std::size_t count, std::size_t objective) const {
-  const bool maximise = objectives().at(objective).maximise;
-  std::vector<std::uint32_t> ids;
-  Statement row(*run_, "scores",
-                std::string("SELECT individual FROM scores WHERE objective = ? ORDER BY value ") +
-                    (maximise ? "DESC" : "ASC") + ", individual LIMIT ?");
-  row.bind(static_cast<std::int64_t>(objective), static_cast<std::int64_t>(count));
-  while (row.step()) ids.push_back(row.index(0));
-  return ids;
 }
 
 }  // namespace evodevo

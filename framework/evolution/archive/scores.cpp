@@ -97,6 +97,17 @@ std::vector<LifeRecord> Archive::lives(std::uint32_t id) const try {
   refuse("individual " + std::to_string(id) + ": " + error.what());
 }
 
+std::vector<std::uint32_t> Archive::best(std::size_t count, std::size_t objective) const {
+  const bool maximise = objectives().at(objective).maximise;
+  std::vector<std::uint32_t> ids;
+  Statement row(*run_, "scores",
+                std::string("SELECT individual FROM scores WHERE objective = ? ORDER BY value ") +
+                    (maximise ? "DESC" : "ASC") + ", individual LIMIT ?");
+  row.bind(static_cast<std::int64_t>(objective), static_cast<std::int64_t>(count));
+  while (row.step()) ids.push_back(row.index(0));
+  return ids;
+}
+
 std::vector<Membership> Archive::memberships(std::size_t objective) const {
   Statement row(*run_, "individuals",
                 "SELECT born, died, value FROM individuals JOIN scores ON individual = id "

@@ -133,12 +133,13 @@ void Archive::add_verifications(const std::vector<Verification>& verifications) 
   WriteTransaction transaction(*run_);
   Statement insert(*run_, "verifications",
                    "INSERT OR REPLACE INTO verifications SELECT ?1, ?2, ?3, ?4, ?5, ?6 "
-                   "WHERE EXISTS (SELECT 1 FROM scores WHERE individual = ?1)");
+                   "WHERE EXISTS (SELECT 1 FROM scores WHERE individual = ?1 AND objective = 0 AND value = ?7)");
   for (const Verification& verification : verifications) {
     std::uint32_t position = 0;
     for (const Trial& trial : verification.trials)
       insert.execute(verification.individual, trial.name, position++, name(trial.status),
-                     trial.status != Status::ok ? std::optional(trial.reason) : std::nullopt, trial.value);
+                     trial.status != Status::ok ? std::optional(trial.reason) : std::nullopt, trial.value,
+                     verification.fitness);
   }
   transaction.commit();
 }

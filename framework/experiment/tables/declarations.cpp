@@ -140,7 +140,7 @@ void declare_schedule(SettingsVisitor& v, Schedule& s) {
 void declare_remeasure(SettingsVisitor& v, Settings& s) {
   v.integer(s.remeasure, host_key::remeasure, {0, 1e6},
             "Number of members of the population that live again in each generation, those first that were measured "
-            "longest ago; their scores become those of all their lives.");
+            "longest ago; their scores become those of all their lives. For operators that keep elders.");
 }
 
 void declare_probability(SettingsVisitor& v, double& probability) {

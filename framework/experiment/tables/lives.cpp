@@ -4,15 +4,15 @@
 
 namespace evodevo {
 
-void check_lives(TomlReader& top, const Settings& settings, bool draws) {
+void check_lives(TomlReader& top, const Settings& settings, bool develops) {
   const bool differ = settings.birth_noise > 0 || std::ranges::any_of(settings.scenarios, &Scenario::is_random) ||
-                      (draws && settings.development.draws_between_lives == DrawsBetweenLives::anew);
+                      (develops && settings.development.draws_between_lives == DrawsBetweenLives::anew);
   if (differ) return;
   const auto refuse = [&](const char* table, const std::string& key) {
     visit_table(top, table, true, [&](TomlReader& t) {
       t.report(key,
                std::string("all lives would be the same; set experiment.birth_noise, ") +
-                   (draws ? "development.draws_between_lives = \"new\", " : "") +
+                   (develops ? "development.draws_between_lives = \"new\", " : "") +
                    "or start_noise or damage of a scenario, or remove " + key,
                {"experiment", "development", "scenario", "selection"});
     });

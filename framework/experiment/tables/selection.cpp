@@ -98,10 +98,10 @@ class SelectionTables {
     const auto names = [&](const char* name) { return table != nullptr && (*table)[name].is_table(); };
     toml::table written;
     const auto read_remeasure = [&](TomlReader& t) {
-      declare_remeasure(t, out_);
       TomlWriter writer;
+      declare_remeasure(t, out_);
       declare_remeasure(writer, out_);
-      for (auto&& [key, value] : writer.take()) written.insert_or_assign(key, value);
+      written = writer.take();
     };
     if (names("parents") || names("survivors"))
       read_table(top, "selection", true, [&](TomlReader& t) {
@@ -113,9 +113,8 @@ class SelectionTables {
       visit_table(
           top, "selection", true,
           [&](TomlReader& t) {
-            declare_remeasure(t, out_);
-            out_.selection = read(t, {}, written);
             read_remeasure(t);
+            out_.selection = read(t, {}, written);
           },
           references_);
     record.insert_or_assign("selection", std::move(written));
@@ -135,7 +134,7 @@ class SelectionTables {
     std::unique_ptr<Selection> op = factory_.make<Selection>(t);
     TomlWriter writer;
     factory_.write(t, *op, writer);
-    record = writer.take();
+    for (auto&& [key, value] : writer.take()) record.insert_or_assign(key, value);
     const Traits traits = factory_.ask(t, [&] { return op->traits(); });
     check_traits(t, traits, choice, out_);
     if (choice.parents && traits.makes_children) out_.child_maker = out_.uses.back().name;

@@ -74,9 +74,10 @@ bool asks_for_random_individuals(TomlReader& top);
 /// Reports if StepRule::dt is fixed and a duration (s) is not a whole number of such steps.
 void check_duration(const TomlReader& table, std::string_view name, double duration, const StepRule& step);
 
-/// Reports several lives that cannot differ, as [experiment] lives or [selection] remeasure ask for. `draws` says
-/// whether development draws random numbers. To be called after all tables have been read.
-void check_lives(TomlReader& top, const Settings& settings, bool draws);
+/// Reports if [experiment] lives or [selection] remeasure asks for several lives, and no key lets them differ.
+/// `develops` says whether operators develop bodies, which may draw random numbers. To be called after all tables have
+/// been read.
+void check_lives(TomlReader& top, const Settings& settings, bool develops);
 
 /// Reads all tables of settings in `top`. Does not check for unknown keys in tables that operators also read. If
 /// errors are collected, settings that are wrong keep their defaults.

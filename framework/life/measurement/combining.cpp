@@ -9,17 +9,6 @@
 namespace evodevo {
 namespace {
 
-/// Returns the objectives of an individual from those in each of its lives.
-std::vector<double> objectives_of(const std::vector<std::vector<double>>& lives, const Experiment& experiment) {
-  std::vector<double> all;
-  for (std::size_t i = 0; i < experiment.objectives.size(); ++i) {
-    std::vector<double> scores;
-    for (const std::vector<double>& life : lives) scores.push_back(life.at(i));
-    all.push_back(combined(std::move(scores), experiment.over_lives.at(i), experiment.objectives[i].maximise));
-  }
-  return all;
-}
-
 /// The scores of some lives that are not objectives, and the number of these lives.
 struct Measured {
   const std::vector<double>& measures;
@@ -75,6 +64,16 @@ double combined(std::vector<double> scores, Over over, bool maximise) {
       break;
   }
   return std::accumulate(scores.begin(), scores.end(), 0.0) / static_cast<double>(scores.size());
+}
+
+std::vector<double> objectives_of(const std::vector<std::vector<double>>& lives, const Experiment& experiment) {
+  std::vector<double> all;
+  for (std::size_t i = 0; i < experiment.objectives.size(); ++i) {
+    std::vector<double> scores;
+    for (const std::vector<double>& life : lives) scores.push_back(life.at(i));
+    all.push_back(combined(std::move(scores), experiment.over_lives.at(i), experiment.objectives[i].maximise));
+  }
+  return all;
 }
 
 Result of_all_lives(const Experiment& experiment, std::vector<Result> lives, std::uint32_t first) {

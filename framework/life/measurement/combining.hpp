@@ -11,6 +11,9 @@ namespace evodevo {
 /// Returns one score for several of the same kind. Infinite only if their sum is.
 double combined(std::vector<double> scores, Over over, bool maximise);
 
+/// Returns the objectives of an individual from those in each of several lives.
+std::vector<double> objectives_of(const std::vector<std::vector<double>>& lives, const Experiment& experiment);
+
 /// Returns the result of an individual from those of its lives, which are numbered from `first`. Objectives are
 /// combined as Experiment::over_lives says; descriptors and measures by their mean, constraints by their worst. The
 /// first life that failed fails the individual; its number is in the reason, unless it is the only one. Spring

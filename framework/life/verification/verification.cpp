@@ -19,7 +19,8 @@ constexpr std::uint32_t perturbed_starts = 3, least_new_lives = 3;
 /// Numbers of lives that selection never sees: of those that decide what comes to the front, and of those that tell
 /// what is to be expected. Lives that have been seen are at most most_lives.
 constexpr std::uint32_t first_deciding_life = 1u << 20, first_telling_life = 1u << 24;
-static_assert(most_lives < first_deciding_life);
+static_assert(most_lives < first_deciding_life &&
+              first_deciding_life + (least_new_lives + 1) * most_lives < first_telling_life);
 constexpr double more_settling = 10;  ///< delay of the windows in the trial settled, s
 constexpr std::int64_t step_parts = 4;
 
@@ -64,6 +65,19 @@ Trial trial_of(const std::string& name, const Result& result) {
   return trial;
 }
 
+/// Returns a trial for each newborn from all its lives, which follow each other.
+std::vector<Trial> trials_of(const std::string& name, const Experiment& experiment, std::span<const Newborn> newborns,
+                             std::vector<Life> lives) {
+  std::vector<Trial> trials;
+  auto next = lives.begin();
+  for (const Newborn& newborn : newborns) {
+    std::vector<Result> own;
+    for (std::uint32_t i = 0; i < newborn.lives; ++i) own.push_back(std::move((next++)->result));
+    trials.push_back(trial_of(name, of_all_lives(experiment, std::move(own), newborn.life)));
+  }
+  return trials;
+}
+
 /// Returns the conditions of lives to come, which differ from those seen even if the experiment has no birth noise.
 Conditions conditions_to_come(const Experiment& experiment) {
   Conditions conditions(experiment);
@@ -98,15 +112,16 @@ std::vector<Trial> reborn(const Experiment& experiment, Simulator& simulator, st
 std::vector<Trial> new_lives(const Experiment& experiment, Simulator& simulator, std::span<const Champion> champions) {
   std::vector<Newborn> newborns = newborns_of(champions);
   for (Newborn& newborn : newborns) {
-    newborn.life = first_deciding_life + newborn.lives;  // others if the champion has lived again since
+    const std::uint32_t seen = newborn.life + newborn.lives - 1;
+    newborn.life = first_deciding_life + least_new_lives * seen;  // others if the champion has lived again since
     newborn.lives = std::max(newborn.lives, least_new_lives);
     newborn.records.clear();
   }
-  std::vector<Trial> trials;
   const Evaluation evaluation(experiment, simulator, conditions_to_come(experiment));
-  for (const Result& result : evaluation.evaluate_in(1, newborns, unwatched))
-    trials.push_back(trial_of(new_lives_trial, result));
-  return trials;
+  Cohort cohort = evaluation.matured(evaluation.birth.in_all_scenes(each_life(experiment, newborns)), unwatched);
+  evaluation.measurement.run(cohort, unwatched);
+  for (Newborn& newborn : newborns) newborn.life = 1;  // as messages count them
+  return trials_of(new_lives_trial, experiment, newborns, std::move(cohort.lives));
 }
 
 /// Repeats final evaluations of matured champions, each time with one thing changed. Several threads may use it.
@@ -133,14 +148,7 @@ class Repetition {
     change_all(matured.lives);
     for (auto& [scenario, lives] : matured.in_scenarios) change_all(lives);
     evaluation.measurement.run(matured, unwatched);
-    std::vector<Trial> trials;
-    auto next = matured.lives.begin();
-    for (const Newborn& champion : champions_) {
-      std::vector<Result> lives;
-      for (std::uint32_t i = 0; i < champion.lives; ++i) lives.push_back(std::move((next++)->result));
-      trials.push_back(trial_of(name, of_all_lives(experiment_, std::move(lives), champion.life)));
-    }
-    return trials;
+    return trials_of(name, experiment_, champions_, std::move(matured.lives));
   }
 
   /// The trials that find artefacts of the step and the method.

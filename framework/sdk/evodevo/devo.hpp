@@ -127,8 +127,9 @@ struct Tag {
 /// The random numbers of one application of one operator to one body. Each is a function of the key of the application,
 /// of its tag and of the identities that it is drawn for, and of nothing else: not of other numbers that were drawn.
 ///
-/// With inherited draws, the key consists of the seed of development, the label of the operator and the cycle;
-/// otherwise also of the individual. Key by tag by identities -> the seed of a stream of Philox (Salmon et al. 2011).
+/// With inherited draws, the key consists of the seed of development, the label of the operator and the cycle; with
+/// [development] draws_between_lives = "new" also of the number of the life; without inherited draws also of the
+/// individual. Key by tag by identities -> the seed of a stream of Philox (Salmon et al. 2011).
 class Draws {
  public:
   /// Makes draws that nobody can use, for contexts without random numbers.
@@ -210,8 +211,9 @@ struct DevoContext {
 
   /// Returns a random number, uniformly distributed in [0, 1), that depends on its tag, on the operator and the cycle,
   /// and on the identities of the masses that it is drawn for, of none, one or two in either order. A second call
-  /// returns the same number. With `[development] draws = "inherited"` it is the same in all individuals; otherwise
-  /// each has its own. Throws std::logic_error if the context has no random numbers.
+  /// returns the same number. With `[development] draws = "inherited"` it is the same in all individuals, and in all
+  /// their lives unless `draws_between_lives` is "new"; otherwise each has its own. Throws std::logic_error if the
+  /// context has no random numbers.
   double draw(const Tag& tag) const { return draws.number(tag); }
   double draw(std::uint32_t mass_index, const Tag& tag) const { return draws.number(tag, {identity(mass_index)}); }
   double draw(std::uint32_t a, std::uint32_t b, const Tag& tag) const {

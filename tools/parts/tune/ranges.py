@@ -17,6 +17,9 @@ REFUSED = {
     "experiment.spring_evaluations": "all runs of a race have the same cost; give it with --set",
     "experiment.hours": "all runs of a race have the same cost, which the clock does not tell; leave it out",
     "experiment.seed": "a race gives every configuration the same seeds; leave it out",
+    "experiment.lives": "it decides what a score is worth; give it with --set",
+    "experiment.birth_noise": "it decides what a score is worth; give it with --set",
+    "selection.remeasure": "it decides what a score is worth; give it with --set",
     "experiment.verify": "it decides which scores count; give it with --set",
     "experiment.verify_front": "it decides which scores count; give it with --set",
 }

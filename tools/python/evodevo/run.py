@@ -226,6 +226,8 @@ class Run:
     def body(self, individual, matured=False, life=1):
         """Returns the Body of an individual, as it was born or, if `matured`, after its development in one of its lives,
         which is then simulated again with `program()`."""
+        if life != 1 and not matured:
+            raise ValueError(f"life = {life}: robots are born with the same body in every life; give matured=True")
         options = ["--matured", "--life", life] if matured else []
         return Body.from_json(json_of("body", self.folder, "--individual", individual, *options))
 

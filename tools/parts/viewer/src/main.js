@@ -31,7 +31,7 @@ const scoreText = (run, robot) => {
 };
 const nameOf = (run, robot) => {
   const whose = runs.length > 1 ? `${run.label}: ` : "";
-  const life = robot.lives?.length > 1 ? `, life ${robot.life}` : "";
+  const life = robot.lived > 1 ? `, life ${robot.life}` : "";
   return isGallery ? `Robot ${robot.individual}` : `${whose}${robot.role}, individual ${robot.individual}${life}`;
 };
 const isElite = ({ robot }) => robot.role === "elite";

@@ -20,6 +20,9 @@ export const shellWord = (text) => (/^[\w./+-]+$/.test(text) ? text : `'${text.r
 /** Returns a name for a file about something, with only those characters that every file system allows. */
 export const fileName = (text, ending) => `${text.replace(/[^\p{L}\p{N}.,_-]+/gu, "-").replace(/^-+|-+$/g, "")}.${ending}`;
 
+/** Returns the name of a robot for files; if it has had several lives, with the number of the one shown. */
+export const robotName = ({ individual, life, lived }) => `individual-${individual}${lived > 1 ? `-life-${life}` : ""}`;
+
 /** Returns the visible body of a life at a time [s], as JSON: positions (m), and of each spring the masses that it joins,
  *  by their places in `masses`, its material and its stress (N) in the cycle. */
 export function bodyJson(life, time) {

@@ -9,7 +9,7 @@ import { Ground } from "./ground.js";
 import { legend } from "./legend.js";
 import { Life } from "./life.js";
 import { described, pick } from "./picking.js";
-import { bodyJson, fileName, linkTo, save } from "./share.js";
+import { bodyJson, fileName, linkTo, robotName, save } from "./share.js";
 import { Stage } from "./stage.js";
 import { Traces } from "./traces.js";
 import { cameraFor, pixelsOfMetre, place, views } from "./views.js";
@@ -83,7 +83,7 @@ export class Viewer {
     this.stages
       .filter(({ life }) => life.shots.length > 0)
       .forEach(({ life }) => {
-        const name = `individual-${life.robot.individual}-${this.time.toFixed(2)}-s`;
+        const name = `${robotName(life.robot)}-${this.time.toFixed(2)}-s`;
         save(fileName(name, "json"), bodyJson(life, this.time));
       });
   }
@@ -99,7 +99,7 @@ export class Viewer {
   }
 
   #shownNames() {
-    return this.stages.map(({ life }) => `individual-${life.robot.individual}`).join("-");
+    return this.stages.map(({ life }) => robotName(life.robot)).join("-");
   }
 
   #makeRenderer() {
