@@ -107,7 +107,7 @@ class OfASmallRun(unittest.TestCase):
         self.assertEqual(list(own["value"]), [life["distance"] for life in shown])
         bodies = [run.body(champion, matured=True, life=life) for life in (1, 2, 3)]
         self.assertFalse(np.array_equal(bodies[0].positions, bodies[1].positions))
-        self.assertTrue(np.array_equal(run.motion(champion, 0.1, life=3)[1][0], bodies[2].positions))
+        np.testing.assert_allclose(run.motion(champion, 0.1, life=3)[1][0], bodies[2].positions, rtol=1e-6, atol=1e-9)
         self.assertGreater(len(run.life(champion, life=2)), 0)
         with self.assertRaisesRegex(ValueError, "life = 2.*matured=True"):
             run.body(champion, life=2)
