@@ -20,6 +20,7 @@ inline constexpr std::uint32_t island = 6;     ///< seeds of islands
 inline constexpr std::uint32_t emigrants = 7;  ///< choice of those who leave an island at random
 inline constexpr std::uint32_t replaced = 8;   ///< choice of those whose place immigrants take
 inline constexpr std::uint32_t birth_noise = 9;
+inline constexpr std::uint32_t signal = 10;  ///< choice of robots and mates that are measured
 inline constexpr std::uint32_t perturbation = 0x10;    ///< first of the streams of perturbations
 inline constexpr std::uint32_t crossover = 0x100;      ///< stream of the first crossover operator
 inline constexpr std::uint32_t mutation = 0x200;       ///< stream of the first mutation operator

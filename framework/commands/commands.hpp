@@ -15,6 +15,7 @@ Command resume_command();
 Command check_command();
 Command show_command();
 Command verify_command();
+Command signal_command();
 Command body_command();
 Command genes_command();
 Command life_command();

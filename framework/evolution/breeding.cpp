@@ -184,9 +184,7 @@ void check_parent(std::uint32_t row, const SelectionContext& context) {
                              std::to_string(context.rows.size()) + " rows, numbered from 0");
 }
 
-std::vector<std::pair<std::uint32_t, std::uint32_t>> chosen_parents(const Experiment& experiment,
-                                                                    const SelectionContext& context,
-                                                                    std::uint32_t count, Rng& rng) {
+Couples chosen_parents(const Experiment& experiment, const SelectionContext& context, std::uint32_t count, Rng& rng) {
   auto pairs = experiment.breeder().couples(context, count, rng);
   if (pairs.size() != count)
     throw std::runtime_error("chose " + std::to_string(pairs.size()) + " pairs of parents, expected " +
@@ -195,19 +193,24 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> chosen_parents(const Experi
   return pairs;
 }
 
+/// Adds a child of each couple that the experiment's variation makes. `table` is that of the population.
+void add_children(const Brood& brood, const SelectionTable& table, const Couples& couples, Nursery& nursery) {
+  nursery.add_distinct(couples.size(), [&](std::size_t i, std::uint32_t id, std::uint32_t repeat) {
+    const auto& [parent, mate] = couples[i];
+    const Couple couple{brood.population.at(parent), brood.population.at(mate),
+                        dominates(scores_of(table.rows()[mate]), scores_of(table.rows()[parent]))};
+    return child(brood.experiment, couple, brood.generation, id, repeat);
+  });
+}
+
 /// Adds `count` children that the experiment's variation makes.
 void add_varied(const Brood& brood, std::uint32_t count, Nursery& nursery) {
   const auto& [experiment, population, generation, first_id, memory, workers] = brood;
   const SelectionTable table(population, experiment, generation, memory);
   Rng rng = stream(experiment, generation, 0, rng_stream::parents);
-  const auto pairs = call_operator(experiment.call_of(Selection::kind, experiment.breeder_index()),
-                                   [&] { return chosen_parents(experiment, table.context(), count, rng); });
-  nursery.add_distinct(count, [&](std::size_t i, std::uint32_t id, std::uint32_t repeat) {
-    const auto& [parent, mate] = pairs[i];
-    const Couple couple{brood.population.at(parent), brood.population.at(mate),
-                        dominates(scores_of(table.rows()[mate]), scores_of(table.rows()[parent]))};
-    return child(brood.experiment, couple, brood.generation, id, repeat);
-  });
+  const Couples couples = call_operator(experiment.call_of(Selection::kind, experiment.breeder_index()),
+                                        [&] { return chosen_parents(experiment, table.context(), count, rng); });
+  add_children(brood, table, couples, nursery);
 }
 
 /// Adds at most `most` immigrants.
@@ -298,6 +301,15 @@ std::vector<Individual> breed(const Experiment& experiment, const std::vector<In
   nursery.add_distinct(random_individuals, [&](std::size_t, std::uint32_t id, std::uint32_t repeat) {
     return random_individual(experiment, generation, id, repeat);
   });
+  return nursery.take();
+}
+
+std::vector<Individual> children_of(const Experiment& experiment, const std::vector<Individual>& population,
+                                    const Couples& couples, std::uint32_t generation, std::uint32_t first_id,
+                                    Workers* workers) {
+  const Brood brood{experiment, population, generation, first_id, {}, workers};
+  Nursery nursery(brood, couples.size());
+  add_children(brood, SelectionTable(population, experiment, generation, {}), couples, nursery);
   return nursery.take();
 }
 

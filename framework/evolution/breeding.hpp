@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "evolution/population.hpp"
@@ -30,5 +31,13 @@ std::vector<Individual> breed(const Experiment& experiment, const std::vector<In
                               std::uint32_t generation, std::uint32_t first_id, std::size_t count,
                               std::span<const std::byte> memory = {}, Workers* workers = nullptr,
                               std::span<const Migrant> migrants = {});
+
+/// Parents of a child: indices of the one whose place the child may take and of its mate.
+using Couples = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+/// Makes a child of each couple of the population by the experiment's variation, as breed() does. The experiment must
+/// have variation (Experiment::makes_children() is false).
+std::vector<Individual> children_of(const Experiment& experiment, const std::vector<Individual>& population,
+                                    const Couples& couples, std::uint32_t generation, std::uint32_t first_id,
+                                    Workers* workers = nullptr);
 
 }  // namespace evodevo

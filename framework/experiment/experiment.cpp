@@ -47,6 +47,13 @@ void warn_of_vain_settings(Experiment& experiment) {
   for (const Scenario& scenario : experiment.scenarios)
     if (falls(scenario.scene) && !falls(experiment.scene))
       experiment.warnings.push_back("scenario " + scenario.name + without_end);
+  if (experiment.develops_by_operators() && experiment.development.draws == DrawsBy::individual &&
+      experiment.lives == 1)
+    experiment.warnings.push_back(
+        "development.draws = \"individual\": each robot has luck of its own, and with experiment.lives = 1 a score "
+        "that no "
+        "later life repeats and no child inherits; set development.draws = \"inherited\", or more lives with "
+        "development.draws_between_lives = \"new\"");
   if (const std::int64_t births = experiment.newborns(); experiment.random_individuals == births)
     experiment.warnings.push_back(
         "experiment.random_individuals = " + std::to_string(births) +

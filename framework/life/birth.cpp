@@ -168,6 +168,12 @@ Life Birth::amid_life(Body body, State state) const {
   return life;
 }
 
+Conditions conditions_to_come(const Experiment& experiment) {
+  Conditions conditions(experiment);
+  if (conditions.birth_noise == 0) conditions.birth_noise = perturbation;
+  return conditions;
+}
+
 void perturb(Life& life, const Experiment& experiment, std::uint32_t start) {
   State& state = life.living.state;
   const double most = perturbation * bounding_box(state.position).longest_side();

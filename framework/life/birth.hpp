@@ -60,6 +60,9 @@ void move_at_random(double most, const Draws& draws, Rng rng, LivingBody& living
 /// A small perturbation of a body: the largest offset of a mass along each axis, relative to the body's longest
 /// side, 1.
 inline constexpr double perturbation = 1e-4;
+/// Returns the conditions of lives to come, which differ from those seen even if the experiment has no birth noise:
+/// then the masses of newborns are moved by `perturbation`.
+Conditions conditions_to_come(const Experiment& experiment);
 /// Perturbs a body: moves each mass along each axis at random by up to `perturbation` of the body's longest side.
 /// `start` (below 240) selects the RNG stream.
 void perturb(Life& life, const Experiment& experiment, std::uint32_t start);

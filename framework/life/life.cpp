@@ -22,17 +22,19 @@ std::uint64_t seed_of(std::int64_t seed, std::uint32_t repetition) {
 }
 
 std::vector<Newborn> each_life(const Experiment& experiment, std::span<const Newborn> newborns) {
-  const bool anew = experiment.development.draws_between_lives == DrawsBetweenLives::anew;
+  const bool always = experiment.development.draws_between_lives == DrawsBetweenLives::anew;
   std::vector<Newborn> all;
   for (const Newborn& newborn : newborns)
     for (std::uint32_t i = 0; i < newborn.lives; ++i) {
       const std::uint32_t life = newborn.life + i;
+      const bool anew = always || newborn.redrawn;
       Newborn& one = all.emplace_back(Newborn{.id = newborn.id,
                                               .generation = newborn.generation,
                                               .genome = newborn.genome,
                                               .recorded_in = newborn.recorded_in,
                                               .life = life,
-                                              .draws = anew ? life : 1});
+                                              .draws = anew ? life : 1,
+                                              .redrawn = newborn.redrawn});
       if (i < newborn.records.size()) one.records = {newborn.records[i]};
     }
   return all;

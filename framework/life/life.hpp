@@ -26,7 +26,15 @@ struct Newborn {
   std::uint32_t life = 1;        ///< number of its life, or of the first of its lives
   std::uint32_t lives = 1;       ///< number of lives to evaluate
   std::uint32_t draws = 1;       ///< number of the draws of development, equal in lives that develop alike
+  bool redrawn = false;          ///< whether each life has draws of its own, whatever the experiment gives to its lives
 };
+
+/// The numbers of lives that selection never sees; those that it has seen are at most most_lives.
+namespace unseen_life {
+inline constexpr std::uint32_t deciding = 1u << 20;  ///< first of those that decide what comes to the front
+inline constexpr std::uint32_t telling = 1u << 24;   ///< first of those that tell what is to be expected
+inline constexpr std::uint32_t studied = 1u << 25;   ///< first of those that measure what selection sees
+}  // namespace unseen_life
 
 /// Returns a newborn for each life of these, in their order. Each has the draws of development that
 /// [development] draws_between_lives gives to its life.

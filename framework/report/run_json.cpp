@@ -6,6 +6,7 @@
 #include "experiment/islands/neighbours.hpp"
 #include "report/diversity.hpp"
 #include "report/lineage.hpp"
+#include "signal/telling.hpp"
 
 namespace evodevo {
 namespace {
@@ -266,6 +267,8 @@ Json run_json(const Archive& archive, const Settings& settings) {
                {"notes", note_titles_json(notes)},
                {"provenances", provenances_json(archive)},
                {"generations", generations_json(archive, generations, map, notes)}};
+  const std::vector<SignalNumber> signal = archive.signal();
+  root["signal"] = signal.empty() ? Json(nullptr) : signal_json(signal, settings, archive.objectives().front());
   const auto best = archive.best(1);
   root["best"] = best.empty() ? Json(nullptr) : individual_json(archive, archive.known_individual(best.front()));
   return root;

@@ -2,6 +2,7 @@
 
 import contextlib
 import csv
+import json
 import os
 import pathlib
 import shlex
@@ -96,6 +97,32 @@ class Comparison(InOwnFolder):
         # added; bodies have about the same number of springs
         self.assertLess(cost[names[0]], cost[names[1]])
         self.assertLess(cost[names[1]], cost[names[2]])
+
+    def test_runs_are_measured_beside_random_search(self):
+        words = ("--random", "--signal", "16", "--jobs", "2", "--set", "experiment.population=10")
+        report = self.compared(*words)
+        rows = report.split("## What repeats")[1].split("\n## ")[0]
+        names = ["plain", "plain,random", "developing", "developing,random"]
+        for name in names:
+            self.assertRegex(rows, rf"\| `{name}` \|( [^|]+ \|){{10}}\n")
+        for name in ("plain,random", "developing,random"):
+            made_by = self.read(name, 1, "SELECT DISTINCT made_by FROM individuals")
+            self.assertEqual(made_by, [("random",)])
+        before = self.runs()
+        shutil.rmtree(self.folder / "out" / "runs" / "plain")  # its rows have what was measured
+        self.assertEqual(self.compared(*words).split("## ")[1:], report.split("## ")[1:])
+        self.assertEqual(self.runs().items() & before.items(), self.runs().items())
+        self.assertIn("plain/seed-1", self.refused_without_numbers(words))
+
+    def read(self, name, seed, query):
+        with contextlib.closing(sqlite3.connect(self.folder / "out/runs" / name / f"seed-{seed}" / "run.sqlite")) as file:
+            return file.execute(query).fetchall()
+
+    def refused_without_numbers(self, words):
+        """Returns what is said if the row of a run that is gone has no numbers."""
+        row = self.folder / "out" / "rows" / "plain" / "seed-1.json"
+        row.write_text(json.dumps(json.loads(row.read_text()) | {"signal": None}))
+        return self.refused(*words)
 
     def test_what_is_there_is_not_made_again(self):
         self.finished("straight")

@@ -168,6 +168,36 @@ class Reports(unittest.TestCase):
         line = report.whole_runs(several(some=runs)).splitlines()[-1]
         self.assertEqual(line.split(" | ")[-5:], ["5 of 5", "0 of 5", "0 of 5", "2 of 4", "4 of 4 |"])
 
+    def test_lives_to_come_are_compared_where_all_runs_were_measured(self):
+        def measured(best, to_come, repeated=0.5):
+            numbers = [("random", "repeatability", "one life", "rank", repeated),
+                       ("random", "repeatability", "all lives", "rank", repeated + 0.25),
+                       ("last", "heritability", "all children", "rank", 0.125),
+                       ("champion", "score", "record", "value", best)]
+            if to_come is not None:
+                numbers.append(("champion", "score", "lives to come", "value", to_come))
+            keys = ("population", "quantity", "of", "scale", "value")
+            return shown([best]) | {"signal": [dict(zip(keys, each)) for each in numbers]}
+
+        def section(objective, **runs):
+            return report.heredity.section(several(**{name: [history(each, objective) for each in some]
+                                                      for name, some in runs.items()}), objective, next(iter(runs)))
+
+        lucky = [measured(9, 1, 0.25), measured(8, 2, 0.5), measured(7, None, 0.75)]
+        sound = [measured(3, 3), measured(3, 4), measured(3, 5)]
+        first, second = (line.strip("| ").split(" | ") for line in section(FAR, lucky=lucky, sound=sound).splitlines()[-2:])
+        self.assertEqual(first, ["`lucky`", "0.75", "-", "-", "0.125", "8", "1", "-", "-", "-", "-"])
+        self.assertEqual(second[5:9], ["3", "4", "-", "-"])
+        self.assertRegex(second[9], r"1.00 \(0\.\d+ to 1.00\)")
+        second = section(CHEAP, lucky=lucky, sound=sound).splitlines()[-1].strip("| ").split(" | ")
+        self.assertRegex(second[9], r"0.33 ")  # less is better, and one of the others fails in all lives
+        beside = report.heredity.section(
+            {Variant(pathlib.Path(name), births=births): [history(each, FAR) for each in some]
+             for name, births, some in (("a", 0, sound), ("b", 0, lucky), ("b", 5, sound))}, FAR, "a")
+        self.assertRegex(beside, r"\n\| `a` .*\| - \| - \|\n\| `b` .* 0.00 \(.*\n\| `b,random` .* 0.50 \(")
+        self.assertEqual(section(FAR, lucky=[*lucky, shown([1]) | {"signal": None}]), "")
+        self.assertIn("`none`", section(FAR, lucky=lucky, none=[shown([None]) | {"signal": None}] * 3))
+
     def test_other_builds_are_named(self):
         def by(run_hash="aa", program="p", device="cpu", evaluations=1):
             """Returns a provenance of a run, as `show --json` has it, in a list."""

@@ -57,6 +57,18 @@ class Sweeps(InOwnFolder):
         names = self.names([self.file("a.toml", "[encoding]\n")], "encoding.size=[2,2,2],[3,2,2]")
         self.assertEqual(names, ["a,encoding.size=[2,2,2]", "a,encoding.size=[3,2,2]"])
 
+    def test_a_random_search_stands_beside_each_variant(self):
+        file = self.file("evo.toml", "[experiment]\npopulation = 8\nchildren = 5\n[encoding]\n")
+        sweeps = [parse_sweep("experiment.children=0,3")]
+        variants = make_variants([file], sweeps, [], with_random=True)
+        names = ["evo,experiment.children=0", "evo,experiment.children=3"]
+        self.assertEqual([variant.name for variant in variants], [names[0], f"{names[0]},random", names[1], f"{names[1]},random"])
+        for variant, births in ((variants[1], 8), (variants[3], 3), (make_variants([file], [], [], True)[1], 5)):
+            self.assertEqual(overrides(variant)[-4:],
+                             ["--set", f"experiment.children={births}", "--set", f"experiment.random_individuals={births}"])
+        with self.assertRaisesRegex(Failure, "--random: .*bare.toml gives no experiment.population; write it"):
+            make_variants([self.file("bare.toml", "[encoding]\n")], [], [], with_random=True)
+
     def test_a_key_is_given_once(self):
         file = self.file("a.toml", "[encoding]\n")
         for sweeps, settings in (

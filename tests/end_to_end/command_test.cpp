@@ -324,6 +324,35 @@ TEST_F(Command, ARunVerifiesItsBestAndMoreAreVerifiedAtWill) {
   EXPECT_THAT(show(), HasSubstr(", " + mark));
 }
 
+TEST_F(Command, SignalMeasuresAnExperimentAndARunWhichKeepsTheNumbers) {
+  const auto of = [](const Json& json, const std::string& population) {
+    return std::ranges::count_if(json.at("numbers"),
+                                 [&](const Json& one) { return one.at("population") == population; });
+  };
+  const std::string bare = said({"signal", file_, "--robots", "12", "--device", "cpu", "--quiet"});
+  EXPECT_THAT(bare, naming("repeatability", "heritability", "95 % interval", "all children", "equal bodies"));
+  EXPECT_EQ(bare, said({"signal", file_, "--robots", "12", "--device", "cpu", "--threads", "1", "--quiet"}));
+
+  run({"experiment.population=10"});
+  EXPECT_TRUE(shown().at("signal").is_null());
+  const std::string chart = scratch_ / "chart.svg";
+  const auto measured = Json::parse(said({"signal", folder_, "--robots", "12", "--svg", chart, "--json", "--quiet"}));
+  EXPECT_EQ(measured, shown().at("signal"));
+  for (const char* population : {"random", "last", "champion"}) EXPECT_GE(of(measured, population), 3) << population;
+  EXPECT_EQ(measured.at("unit"), "body lengths");
+  for (const Json& one : measured.at("numbers"))
+    if (one.at("of") == "record") {
+      EXPECT_EQ(one.at("value"), shown().at("best").at("objectives").at("distance"));
+    }
+  EXPECT_THAT(content_of(chart), naming("<svg", "random population", "last population", "body lengths", "</svg>"));
+
+  EXPECT_THAT(refusal({"signal", folder_, "--set", "experiment.lives=2"}), naming("--set", folder_, "is a run"));
+  EXPECT_THAT(refusal({"signal", folder_, "--seed", "2"}), naming("--seed", folder_));
+  EXPECT_THAT(refusal({"signal", file_, "--robots", "7"}), naming("--robots 7", "8 to 10000"));
+  EXPECT_THAT(refusal({"signal", file_, "--svg", file_}), naming("--svg", file_));
+  EXPECT_THAT(refusal({"signal", scratch_ / "none"}), naming("none"));
+}
+
 TEST_F(Command, AllErrorsOfAnExperimentAreToldWithTheirNumberAndLeaveNothing) {
   std::string text = small_experiment;
   text.replace(text.find("seed = 7"), 8, "seed = -7");

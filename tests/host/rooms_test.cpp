@@ -34,6 +34,7 @@ const Floors floors{{"kernels/include"},
                     {"framework/life"},
                     {"framework/evolution"},
                     {"framework/cluster"},
+                    {"framework/signal"},
                     {"framework/environments", "framework/report", "framework/conformance"},
                     {"framework/commands"},
                     {"framework/main.cpp", "framework/help.inc"}};

@@ -112,6 +112,14 @@ class OfASmallRun(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "life = 2.*matured=True"):
             run.body(champion, life=2)
 
+    def test_what_was_measured_of_a_run_is_a_table(self):
+        self.assertTrue(self.run_.signal.empty)
+        folder = self.make_run(options=("--set", "experiment.population=10"))
+        printed = json.loads(call("signal", folder, "--robots", "8", "--json", "--quiet"))["numbers"]
+        table = evodevo.Run(folder).signal
+        self.assertEqual(table.astype(object).where(table.notna(), None).to_dict("records"), printed)
+        self.assertEqual(set(table["population"]), {"random", "last", "champion"})
+
     def test_bodies_read_back_as_they_were_printed(self):
         champion = self.run_.best().index[0]
         for options in ([], ["--matured"]):

@@ -330,6 +330,24 @@ test("several runs give one page that compares them", async () => {
   await closed(both);
 });
 
+test("what was measured of a run stands on its page, as text", async () => {
+  const run = scratch.path("measured");
+  cpSync(scratch.run, run, { recursive: true });
+  archived(run, `INSERT INTO signal VALUES(0, 'random', 'repeatability', 'one life', 'rank', 0.75, 0.5, 1, 60)`);
+  archived(run, `INSERT INTO signal VALUES(1, 'last', '<b>odd</b>', 'all', 'share', 0.25, NULL, NULL, 9)`);
+  const measured = await opened(reported(run, "--best", "1"));
+  const rows = measured.locator(".signal tbody tr");
+  assert.deepEqual(await rows.nth(0).locator("td").allTextContents(),
+    ["random", "repeatability", "one life", "rank", "0.75", "0.5 to 1", "60"]);
+  assert.equal((await rows.nth(1).locator("td").allTextContents())[1], "<b>odd</b>");
+  assert.equal((await rows.nth(1).locator("td").allTextContents())[5], "–");
+  assert.ok((await measured.locator(".signal p").count()) > 0);
+  await closed(measured);
+  const not = await opened(reported(scratch.run, "--best", "1"));
+  assert.equal(await not.locator(".signal").count(), 0);
+  await closed(not);
+});
+
 test("where nothing ended with a fitness, charts say so", async () => {
   const barren = await opened(reported(barrenRun().run, "--individual", "0"));
   assert.equal(await barren.getByText("no individual has ended with a fitness").count(), 3);

@@ -90,8 +90,8 @@ std::optional<Journal> recorded_wish(const Archive& archive) {
   if (!wish) return std::nullopt;
   const auto journal = journal_named(*wish);
   if (!journal)
-    archive.refuse(fmt::format("its entry \"{}\" is \"{}\", expected \"wal\" or \"delete\"", journal_key,
-                               printable(*wish)));
+    archive.refuse(
+        fmt::format("its entry \"{}\" is \"{}\", expected \"wal\" or \"delete\"", journal_key, printable(*wish)));
   return journal;
 }
 

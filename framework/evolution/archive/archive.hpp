@@ -113,6 +113,17 @@ struct Failure {
   bool varies = false;  ///< whether the reasons of other individuals in the group differ from it after the first digit
 };
 
+/// A number of what selection sees (signal/measuring.hpp).
+struct SignalNumber {
+  std::string population;  ///< whose: "random", "last" or "champion"
+  std::string quantity;    ///< such as "repeatability"
+  std::string of;          ///< of what, such as "one life"
+  std::string scale;       ///< "rank", "share", or "value" in the unit of the first objective
+  double value = 0;
+  std::optional<double> low, high;  ///< 95 % interval
+  std::int64_t count = 0;           ///< number of robots, children or lives that were measured
+};
+
 /// The archive of a run. Functions that read it check every value; they throw ArchiveError if a value is impossible.
 class Archive {
  public:
@@ -142,6 +153,9 @@ class Archive {
   /// Adds verifications. They replace earlier verifications of the same individuals. Leaves out those of individuals
   /// that have lost their fitness, or have another, since they were chosen.
   void add_verifications(const std::vector<Verification>& verifications);
+
+  /// Stores what was measured of the run, in place of earlier numbers.
+  void set_signal(const std::vector<SignalNumber>& numbers);
 
   const std::filesystem::path& folder() const;
   /// Returns whether the run's file is still the one that was opened; if it is not, written data are lost.
@@ -217,6 +231,8 @@ class Archive {
   std::vector<LifeRecord> lives(std::uint32_t id) const;
   /// Returns the verification of an individual, or nullopt if the individual has not been verified.
   std::optional<Verification> verification(std::uint32_t id) const;
+  /// Returns what was measured of the run; empty if nothing was.
+  std::vector<SignalNumber> signal() const;
 
  private:
   explicit Archive(std::unique_ptr<RunDatabase> run);

@@ -86,6 +86,10 @@ CREATE TABLE verifications(
   individual INTEGER NOT NULL, trial TEXT NOT NULL, position INTEGER NOT NULL,
   status TEXT NOT NULL, reason TEXT, value REAL,  -- of the first objective
   PRIMARY KEY(individual, trial)) WITHOUT ROWID;
+-- what of its scores selection can use, as far as it was measured
+CREATE TABLE signal(
+  position INTEGER PRIMARY KEY, population TEXT NOT NULL, quantity TEXT NOT NULL, of TEXT NOT NULL, scale TEXT NOT NULL,
+  value REAL NOT NULL, low REAL, high REAL, count INTEGER NOT NULL);
 -- who lived on after each generation, and how old its genes were then
 CREATE VIEW members AS
   SELECT generation, id AS individual, generation - origin AS age

@@ -123,6 +123,7 @@ void Archive::commit(const FinishedGeneration& generation) {
                summary.artefact, summary.lucky, summary.passive, summary.clones,
                static_cast<std::int64_t>(summary.spring_evaluations), summary.wall_time);
   write_remembered(*run_, generation.remembered, summary.generation);
+  run_->execute("DELETE FROM signal");  // it was that of a population which lives no longer
   Statement emigrate(*run_, "emigrants", "INSERT INTO emigrants VALUES(?, ?, ?)");
   for (const auto& [island, individual] : generation.emigrations)
     emigrate.execute(summary.generation, island, individual);

@@ -16,11 +16,8 @@ namespace evodevo {
 namespace {
 
 constexpr std::uint32_t perturbed_starts = 3, least_new_lives = 3;
-/// Numbers of lives that selection never sees: of those that decide what comes to the front, and of those that tell
-/// what is to be expected. Lives that have been seen are at most most_lives.
-constexpr std::uint32_t first_deciding_life = 1u << 20, first_telling_life = 1u << 24;
-static_assert(most_lives < first_deciding_life &&
-              first_deciding_life + (least_new_lives + 1) * most_lives < first_telling_life);
+static_assert(most_lives < unseen_life::deciding &&
+              unseen_life::deciding + (least_new_lives + 1) * most_lives < unseen_life::telling);
 constexpr double more_settling = 10;  ///< delay of the windows in the trial settled, s
 constexpr std::int64_t step_parts = 4;
 
@@ -78,13 +75,6 @@ std::vector<Trial> trials_of(const std::string& name, const Experiment& experime
   return trials;
 }
 
-/// Returns the conditions of lives to come, which differ from those seen even if the experiment has no birth noise.
-Conditions conditions_to_come(const Experiment& experiment) {
-  Conditions conditions(experiment);
-  if (conditions.birth_noise == 0) conditions.birth_noise = perturbation;
-  return conditions;
-}
-
 /// Lets champions live again from birth on. Returns a trial for each. `number` counts the lives to come from 1.
 std::vector<Trial> reborn(const Experiment& experiment, Simulator& simulator, std::span<const Champion> champions,
                           bool redrawn, std::uint32_t number) {
@@ -97,7 +87,7 @@ std::vector<Trial> reborn(const Experiment& experiment, Simulator& simulator, st
     newborn.life = (number - 1) % seen + 1;
     newborn.lives = 1;
     Newborn& life = newborns.emplace_back(each_life(experiment, {&newborn, 1}).front());
-    life.life = first_telling_life + number;
+    life.life = unseen_life::telling + number;
     if (redrawn) life.draws = life.life;
   }
   Cohort cohort = evaluation.matured(evaluation.birth.in_all_scenes(newborns), unwatched);
@@ -113,7 +103,7 @@ std::vector<Trial> new_lives(const Experiment& experiment, Simulator& simulator,
   std::vector<Newborn> newborns = newborns_of(champions);
   for (Newborn& newborn : newborns) {
     const std::uint32_t seen = newborn.life + newborn.lives - 1;
-    newborn.life = first_deciding_life + least_new_lives * seen;  // others if the champion has lived again since
+    newborn.life = unseen_life::deciding + least_new_lives * seen;  // others if the champion has lived again since
     newborn.lives = std::max(newborn.lives, least_new_lives);
     newborn.records.clear();
   }

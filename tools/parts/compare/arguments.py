@@ -11,6 +11,7 @@ Runs each experiment with several seeds and compares the fitness of their best r
 evaluations and after equal numbers of spring evaluations. Writes a report with medians and effect sizes, each with its
 interval, with rank tests of all experiments against one of them, with the shares of failed evaluations, and a chart.
 If the experiments have the same descriptors, it also compares coverage and QD score of their maps of niches.
+With --signal, it also compares the best robots in lives to come.
 If the experiments have scenarios, it also compares the best robots in each scenario that the experiments share.
 The same command continues a comparison that was stopped; more seeds, experiments or values may be added. Of each
 complete run, the folder `rows` keeps what the report needs, so that runs need not be kept. With
@@ -41,6 +42,17 @@ def parse(words):
         "--sweep", metavar="KEY=V,V,…", action="append", default=[], help="try each value, if KEY's table exists"
     )
     add("--set", metavar="KEY=VALUE", action="append", default=[], help="set a value, if KEY's table exists")
+    add(
+        "--random",
+        action="store_true",
+        help="also make each experiment as a random search at the same cost, in which nobody has children",
+    )
+    add(
+        "--signal",
+        metavar="ROBOTS",
+        type=positive,
+        help="measure each run with `evodevo signal --robots ROBOTS`: what repeats, what children inherit, lives to come",
+    )
     add("--against", metavar="NAME", help="experiment to test the others against, as named in the report (the first)")
     add(
         "--question",

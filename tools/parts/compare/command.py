@@ -37,7 +37,7 @@ def compare(words, program):
     given = arguments.parse(words)
     launchers.refuse_options(given)
     sweeps, settings = map(parse_sweep, given.sweep), map(parse_setting, given.set)
-    variants = make_variants(given.experiments, list(sweeps), list(settings))
+    variants = make_variants(given.experiments, list(sweeps), list(settings), given.random)
     against = tested_against(given.against, variants)
     pairs = [questions.parse(text, [variant.name for variant in variants]) for text in given.question]
     out = given.out or pathlib.Path("runs") / f"compare-{given.experiments[0].stem}"
@@ -51,6 +51,8 @@ def compare(words, program):
         runs.check()
         runs.make(given.jobs or 1, launcher, tell)
 
+    if given.signal:
+        runs.measure(given.signal, given.jobs or 1, tell)
     shown = {run: runs.shown(run) for run in runs.all}
     objective = first_objective(shown.values())
     histories = {

@@ -54,6 +54,7 @@ class History:
     redrawn: list  # likewise in those in which it drew others
     scenarios: dict  # scores of the run's best robot by scenario
     axes: list | None  # of the run's map; None if it has no map
+    signal: list | None  # what `evodevo signal` has measured, if anything
 
     def at(self, axis, cost, what):
         """Returns the value of the list `what` after the last generation that was complete at that cost."""
@@ -95,6 +96,7 @@ def history(shown, objective):
         redrawn=lives_to_come("redrawn"),
         scenarios=by_scenario(shown["best"], objective),
         axes=shown["map"] and shown["map"]["axes"],
+        signal=shown.get("signal"),
     )
 
 

@@ -3,7 +3,7 @@
 import collections
 import dataclasses
 
-from . import inference, niches, questions, scenarios
+from . import heredity, inference, niches, questions, scenarios
 from .standings import AXES, common_cost, comparison, median_with_interval, number, table, too_few_seeds
 
 METHOD = f"""\
@@ -227,6 +227,7 @@ def markdown(histories, objective, setting):
         *(section(histories, objective, axis, setting.against) for axis in AXES),
         maps,
         in_scenarios(histories, objective),
+        heredity.section(histories, objective, setting.against),
         whole_runs(histories),
         METHOD,
         NICHES if maps else "",

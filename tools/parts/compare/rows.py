@@ -31,6 +31,7 @@ def pack(shown):
     """Returns the row of a run, given the output of `evodevo show --json`: one list for each quantity, instead of one
     object for each generation."""
     row = {key: shown[key] for key in KEYS}
+    row["signal"] = (shown["signal"] or {}).get("numbers")
     row["provenances"] = [provenance(each) for each in row["provenances"]]
     row["generations"] = {column: [each[column] for each in shown["generations"]] for column in COLUMNS}
     return row
@@ -38,7 +39,7 @@ def pack(shown):
 
 def unpack(row):
     """Returns a row in the form of the output of `evodevo show --json`."""
-    shown = {key: row[key] for key in KEYS}
+    shown = {key: row[key] for key in KEYS} | {"signal": row.get("signal")}  # older rows have none
     generations = row["generations"]
     generations.setdefault("lucky", [0] * len(generations["evaluations"]))  # of rows of before there was this status
     columns = [generations[column] for column in COLUMNS]

@@ -1,6 +1,7 @@
 """The runs of a comparison, and how they are made."""
 
 import collections
+import concurrent.futures
 import contextlib
 import dataclasses
 import itertools
@@ -39,17 +40,19 @@ class Variant:
     experiment: pathlib.Path
     swept: tuple = ()  # pairs (key, value)
     settings: tuple = ()  # pairs (key, value)
+    births: int = 0  # of a random search: how many random robots each generation has
 
     @property
     def name(self):
         """The name of the variant, which is also the name of its folder."""
-        parts = [self.experiment.stem, *(f"{key}={value}" for key, value in self.swept)]
+        parts = [self.experiment.stem, *(f"{key}={value}" for key, value in self.swept), *["random"] * (self.births > 0)]
         return ",".join(urllib.parse.quote(part, safe="=+ [],") for part in parts)
 
     @property
     def label(self):
         """The name of the variant in charts, which gives keys without their tables."""
-        return " ".join([self.experiment.stem, *(f"{key.split('.')[-1]}={value}" for key, value in self.swept)])
+        parts = [f"{key.split('.')[-1]}={value}" for key, value in self.swept]
+        return " ".join([self.experiment.stem, *parts, *["random"] * (self.births > 0)])
 
 
 @dataclasses.dataclass(frozen=True)
@@ -156,20 +159,37 @@ def refuse_keys(experiments, sweeps, settings):
             raise Failure(f"{option} {key}: no experiment has a table [{table}]; add it to those that should have it")
 
 
-def make_variants(files, sweeps, settings):
-    """Returns each experiment with every combination of values for those keys whose tables it has."""
+def births_of(variant, experiment):
+    """Returns how many robots are born in each generation of a variant."""
+    given = {f"experiment.{key}": value for key, value in experiment.get("experiment", {}).items()}
+    given |= dict((*variant.settings, *variant.swept))
+    births = [str(given.get(f"experiment.{key}", "0")) for key in ("children", "population")]
+    counts = [int(text) for text in births if text.isdecimal() and int(text) > 0]
+    if not counts:
+        raise Failure(f"--random: {variant.experiment} gives no experiment.population; write it into the file")
+    return counts[0]
+
+
+def make_variants(files, sweeps, settings, with_random=False):
+    """Returns each experiment with every combination of values for those keys whose tables it has, and each of them as a
+    random search, too, if asked for."""
     experiments = read_experiments(files)
     refuse_keys(experiments.values(), sweeps, settings)
     variants = []
     for file, experiment in experiments.items():
         values = [[(key, value) for value in values] for key, values in sweeps if has_table_of(experiment, key)]
         fixed = tuple((key, value) for key, value in settings if has_table_of(experiment, key))
-        variants += [Variant(file, swept, fixed) for swept in itertools.product(*values)]
+        for swept in itertools.product(*values):
+            variants.append(variant := Variant(file, swept, fixed))
+            if with_random:
+                variants.append(dataclasses.replace(variant, births=births_of(variant, experiment)))
     return variants
 
 
 def overrides(variant):
-    return [word for key, value in (*variant.settings, *variant.swept) for word in ("--set", f"{key}={value}")]
+    keys = ("experiment.children", "experiment.random_individuals")
+    random = [(key, variant.births) for key in keys] if variant.births else []
+    return [word for key, value in (*variant.settings, *variant.swept, *random) for word in ("--set", f"{key}={value}")]
 
 
 class Runs:
@@ -282,6 +302,22 @@ class Runs:
         if complete := shown["finished"] and shown["verified"]:
             rows.write(run.row, shown)
         return complete
+
+    def measure(self, robots, jobs, tell):
+        """Measures so many robots of each run that was not measured yet, several runs at a time, and adds the numbers to
+        their rows."""
+        left = [run for run in self.all if not rows.read(run.row)["signal"]]
+        for run in left:
+            if not self._has_begun(run):
+                raise Failure(f"{run.folder}: is gone, and {run.row} has no signal; remove that file, and the run is made again")
+        with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+            for run, _ in zip(left, pool.map(lambda run: self._measure(run, robots), left)):
+                tell(f"{run.variant.name}, seed {run.seed} is measured")
+
+    def _measure(self, run, robots):
+        if self._shown(run)["best"] is not None:
+            self._evodevo("signal", run.folder, "--robots", robots, "--quiet")
+        rows.write(run.row, self._shown(run))
 
     def shown(self, run):
         """Returns what comparisons use of the output of `evodevo show --json` for a run that is complete."""

@@ -15,7 +15,7 @@ from .body import Body
 from .errors import ArchiveError
 from .program import json_of, output_of
 
-FORMAT = 15  # of the archive
+FORMAT = 16  # of the archive
 
 
 def _gene_name(names, count, gene):
@@ -138,6 +138,13 @@ class Run:
         """The trials of verified individuals: individual, trial, status, reason, value (of the first objective)."""
         return self.query("SELECT individual, trial, status, reason, value FROM verifications "
                           "ORDER BY individual, position")
+
+    @functools.cached_property
+    def signal(self):
+        """What repeats in scores and what children inherit, as `evodevo signal` has measured it: population, quantity,
+        of, scale, value, low, high (95 % interval), count. It has no rows if nothing was measured since the last
+        generation."""
+        return self.query("SELECT population, quantity, of, scale, value, low, high, count FROM signal ORDER BY position")
 
     @functools.cached_property
     def members(self):

@@ -11,6 +11,7 @@ import { Lineage } from "./lineage.js";
 import { NicheMaps } from "./niches.js";
 import { directionOf, hasUnit, inLifeShown, listed, own, quantityText } from "./scores.js";
 import { linked, shellWord } from "./share.js";
+import { signalTables } from "./signal.js";
 import { stillOf } from "./still.js";
 import { colourRuns, factTable, robotTable, TestTable, VerificationTable } from "./tables.js";
 import { hasGraphics, Viewer } from "./viewer.js";
@@ -208,7 +209,12 @@ async function begin() {
     page.charts.draw();
     page.portraits = portraits(page.viewer);
     page.pictured = Promise.all(page.portraits.map((one) => one.draw())); // pictures may come later than the page
-    main.append(...page.portraits.map(({ root }) => root), robotTable(runs, robots, isFirstLife, page.viewer), ...migrantTables(runs));
+    main.append(
+      ...page.portraits.map(({ root }) => root),
+      ...signalTables(runs),
+      robotTable(runs, robots, isFirstLife, page.viewer),
+      ...migrantTables(runs),
+    );
   }
   main.append(experiments(), element("footer", { textContent: `evodevo ${data.evodevo}` }));
   addEventListener("hashchange", () => {

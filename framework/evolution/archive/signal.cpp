@@ -1,0 +1,28 @@
+// The functions of Archive that read and write what was measured of a run.
+#include "evolution/archive/archive.hpp"
+#include "evolution/archive/database.hpp"
+
+namespace evodevo {
+
+void Archive::set_signal(const std::vector<SignalNumber>& numbers) {
+  WriteTransaction transaction(*run_);
+  run_->execute("DELETE FROM signal");
+  Statement insert(*run_, "signal", "INSERT INTO signal VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  std::uint32_t position = 0;
+  for (const SignalNumber& number : numbers)
+    insert.execute(position++, number.population, number.quantity, number.of, number.scale, number.value, number.low,
+                   number.high, number.count);
+  transaction.commit();
+}
+
+std::vector<SignalNumber> Archive::signal() const {
+  Statement row(*run_, "signal",
+                "SELECT population, quantity, of, scale, value, low, high, count FROM signal ORDER BY position");
+  std::vector<SignalNumber> numbers;
+  while (row.step())
+    numbers.push_back({row.line(0), row.line(1), row.line(2), row.line(3), row.number(4), row.optional_number(5),
+                       row.optional_number(6), row.integer(7, 0, std::numeric_limits<std::int64_t>::max())});
+  return numbers;
+}
+
+}  // namespace evodevo
