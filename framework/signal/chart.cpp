@@ -22,10 +22,11 @@ struct Span {
 Span span_of(const Signal& signal) {
   double low = 0, high = 0;
   for (const auto& [population, families] : signal.families)
-    for (const Kin& kin : families) {
-      low = std::min({low, kin.parents, kin.children});
-      high = std::max({high, kin.parents, kin.children});
-    }
+    for (const Family& family : families)
+      for (const double parents : family.parents) {
+        low = std::min({low, parents, family.children});
+        high = std::max({high, parents, family.children});
+      }
   const double spare = high > low ? 0.05 * (high - low) : 1;
   return {low - spare, high + spare};
 }
@@ -50,22 +51,26 @@ std::string axes(const Span& span) {
   return text;
 }
 
-/// Returns the line of the given slope through the mean of the families, cut at the borders of the panel.
-std::string line(const Span& span, const std::vector<Kin>& families, double slope) {
-  Kin mean;
-  for (const Kin& kin : families) {
-    mean.parents += kin.parents / static_cast<double>(families.size());
-    mean.children += kin.children / static_cast<double>(families.size());
-  }
+/// Returns the line of the regression through the mean of the points, cut at the borders of the panel.
+std::string line(const Span& span, const std::vector<Family>& families, double slope) {
+  double x = 0, y = 0, weight = 0;
+  for (const Family& family : families)
+    for (const double parents : family.parents) {
+      x += family.weight * parents;
+      y += family.weight * family.children;
+      weight += family.weight;
+    }
+  x /= weight;
+  y /= weight;
   const auto end = [&](double border) {
-    const double y = std::clamp(mean.children + slope * (border - mean.parents), span.low, span.high);
-    return Kin{slope == 0 ? border : mean.parents + (y - mean.children) / slope, y};
+    const double height = std::clamp(y + slope * (border - x), span.low, span.high);
+    return std::pair{span.place(slope == 0 ? border : x + (height - y) / slope), side - span.place(height)};
   };
-  const Kin from = end(span.low), to = end(span.high);
+  const auto [x1, y1] = end(span.low);
+  const auto [x2, y2] = end(span.high);
   return fmt::format(
-      "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#d55e00\" stroke-width=\"2\"/>\n",
-      span.place(from.parents), side - span.place(from.children), span.place(to.parents),
-      side - span.place(to.children));
+      "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#d55e00\" stroke-width=\"2\"/>\n", x1, y1,
+      x2, y2);
 }
 
 }  // namespace
@@ -88,9 +93,10 @@ std::string signal_chart(const Signal& signal, const Objective& objective) {
     text += axes(span);
     text += fmt::format(
         "<line x1=\"0\" y1=\"{0:.0f}\" x2=\"{0:.0f}\" y2=\"0\" stroke=\"#bbb\" stroke-dasharray=\"4\"/>\n", side);
-    for (const Kin& kin : families)
-      text += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.5\" fill=\"#0072b2\" fill-opacity=\"0.6\"/>\n",
-                          span.place(kin.parents), side - span.place(kin.children));
+    for (const Family& family : families)
+      for (const double parents : family.parents)
+        text += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"#0072b2\" fill-opacity=\"0.4\"/>\n",
+                            span.place(parents), side - span.place(family.children));
     for (const SignalNumber& number : signal.numbers)
       if (number.population == population && number.quantity == "heritability" && number.of == "all children" &&
           number.scale == "value")

@@ -133,7 +133,8 @@ std::optional<Estimate> median_of(const std::vector<double>& values) {
   return bootstrapped(values.size(), [&](auto which) -> std::optional<double> {
     std::vector<double> some;
     for (const std::size_t i : which) some.push_back(values[i]);
-    return combined(std::move(some), Over::median, true);
+    const double median = combined(std::move(some), Over::median, true);
+    return std::isfinite(median) ? std::optional(median) : std::nullopt;
   });
 }
 

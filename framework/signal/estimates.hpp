@@ -52,7 +52,7 @@ std::optional<double> regression(std::span<const Family> families, std::span<con
 /// The same of all families, with an interval over families.
 std::optional<Estimate> heritability(std::span<const Family> families);
 
-/// Returns the median, with an interval over the values. Nothing without values.
+/// Returns the median, with an interval over the values. Nothing without values, or if the median is infinite.
 std::optional<Estimate> median_of(const std::vector<double>& values);
 
 }  // namespace evodevo

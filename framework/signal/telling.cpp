@@ -43,6 +43,10 @@ std::string with_interval(const SignalNumber& number) {
 
 std::string percent(double share) { return fmt::format("{:.0f} %", 100 * share); }
 
+/// The bounds of the interval; the number itself, if it has none.
+double low(const SignalNumber& number) { return number.low.value_or(number.value); }
+double high(const SignalNumber& number) { return number.high.value_or(number.value); }
+
 /// `at_first` is what was measured of random robots.
 std::string on_repeatability(const Told& told, const Told& at_first, const Settings& settings,
                              const std::string& whose) {
@@ -58,41 +62,36 @@ std::string on_repeatability(const Told& told, const Told& at_first, const Setti
   if (all != nullptr) text += fmt::format("; of one life {}", with_interval(*one));
   text += "). ";
   constexpr double none = 0.05, all_but_rounding = 1 - 1e-9;
+  constexpr int most_worthwhile = 10;
   if (one->value > all_but_rounding)
     return text +
            "Lives of one robot are the same: give them noise where they are measured ([[scenario]] start_noise), or "
            "this says nothing.";
-  constexpr int most_worthwhile = 10;
   if (seen.value >= enough) return text + "More lives would change little.";
-  constexpr double much = 0.3;
   const SignalNumber* before = at_first.find("repeatability", "one life", "rank");
-  if (seen.value < much && before != nullptr && before->value >= much + seen.value)
+  if (before != nullptr && low(*before) > high(*one))
     return text + fmt::format(
-                      "Of random robots it is {} of one life: selection has used up what repeats, and goes on with "
-                      "luck. More lives ([experiment] lives) or members that live again (remeasure) keep luck from "
-                      "leading.",
+                      "Of one life of random robots it is {}: selection has used up much of what repeats. More lives "
+                      "([experiment] lives), or members that live again (remeasure), keep luck from leading.",
                       with_interval(*before));
-  if (one->value < none)
-    return text + "No number of lives would help; another measure may, such as direction = \"any\" of distance.";
+  if (one->value < none) return text + "No number of lives would help; another measure may.";
   const int lives = static_cast<int>(std::ceil(4 * (1 - one->value) / one->value - 1e-9));
-  if (lives > settings.lives && lives <= most_worthwhile)
-    return text + fmt::format("With [experiment] lives = {} it would be about {}.", lives, enough);
-  if (lives > settings.lives) text += fmt::format("It would take {} lives to bring it to {}; ", lives, enough);
-  return text + "another measure may tell robots apart sooner, such as direction = \"any\" of distance.";
+  if (lives <= settings.lives) return text + "Another measure may tell robots apart sooner.";
+  text += fmt::format("The mean of {} lives would have about {}", lives, enough);
+  return text + (lives <= most_worthwhile ? fmt::format(" ([experiment] lives = {}).", lives)
+                                          : "; another measure may tell robots apart sooner.");
 }
 
-std::string on_draws(const Told& told) {
+std::string on_draws(const Told& told, const Settings& settings) {
   constexpr double loss = 0.2;
   const SignalNumber *same = told.find("repeatability", "one life", "rank"),
                      *redrawn = told.find("repeatability", "new draws", "rank");
   if (same == nullptr || redrawn == nullptr) return "";
   const std::string text =
       "With other draws of development in each life, the repeatability of one is " + with_interval(*redrawn);
-  return redrawn->value > same->value - loss ? text + ", so that little of the score depends on these draws."
-                                             : text +
-                                                   ": much of the score depends on these draws. draws_between_lives = "
-                                                   "\"new\" selects for robots that do "
-                                                   "not depend on them.";
+  if (redrawn->value > same->value - loss) return text + ", so that little of the score depends on these draws.";
+  return text + ": much of the score depends on these draws. " + (settings.lives > 1 ? "Lives" : "Several lives") +
+         " with draws_between_lives = \"new\" select for robots that do not depend on them.";
 }
 
 std::string on_heritability(const Told& told) {
@@ -100,33 +99,34 @@ std::string on_heritability(const Told& told) {
                      *genetic = told.find("heritability / repeatability", "all children", "rank"),
                      *equal = told.find("equal bodies", "all children", "share");
   if (slope == nullptr || equal == nullptr) return "";
-  std::string text = fmt::format("Of the difference in rank between parents, their children get {} (heritability {}",
+  std::string text = fmt::format("Of a difference in rank between parents, their children get {} (heritability {}",
                                  percent(std::clamp(slope->value, 0.0, 1.0)), with_interval(*slope));
   if (genetic != nullptr) text += fmt::format("; divided by the repeatability {}", with_interval(*genetic));
   text += "). ";
-  constexpr double most_equal = 0.5, little = 0.4;
+  constexpr double most_equal = 0.5, half = 0.5, some = 0.2;
   if (equal->value > most_equal)
     return text + percent(equal->value) + " of them have their parent's body: larger mutations would try more.";
-  if (genetic != nullptr && genetic->value < little) return text + "Smaller mutations would let them be more alike.";
-  return text + (slope->value < little ? "Luck keeps them apart more than their genes do."
-                                       : "Mutations are small enough for selection.");
+  if (genetic != nullptr && high(*genetic) < half) return text + "Smaller mutations would let them be more alike.";
+  if (low(*slope) > some) return text + "Mutations are small enough for selection.";
+  if (high(*slope) < half) return text + "Luck, or mutation, keeps them apart more than their genes do.";
+  return text + "More robots (--robots) would tell this more exactly.";
 }
 
 std::string on_champion(const Told& told, const Objective& objective) {
-  const SignalNumber *record = told.find("score", "record", "value"),
-                     *again = told.find("score", "lives to come", "value"),
-                     *redrawn = told.find("score", "new draws", "value"),
-                     *children = told.find("score", "children", "value");
+  const SignalNumber* record = told.find("score", "record", "value");
   if (record == nullptr) return "";
   const auto quantity = [&](const SignalNumber& number) { return short_quantity(number.value, objective.unit); };
   std::string text = "The best robot has the record " + quantity(*record);
-  if (again == nullptr) return text + ", and fails in all lives to come.";
-  text += "; in lives to come it reaches " + quantity(*again);
-  if (redrawn != nullptr) text += ", with other draws of development " + quantity(*redrawn);
-  if (children != nullptr) {
-    text += ", and its children reach " + quantity(*children);
-    if (record->value > 0) text += ", " + percent(children->value / record->value) + " of the record";
-    text += " (medians)";
+  for (const auto& [of, whose] : {std::pair{"lives to come", "lives to come"},
+                                  {"new draws", "lives with other draws of development"},
+                                  {"children", "its children"}}) {
+    if (told.find("failures", of, "share") == nullptr) continue;
+    const SignalNumber* score = told.find("score", of, "value");
+    text += std::string("; ") + (score != nullptr ? "the median of " : "at least half of ") + whose +
+            (score != nullptr ? " is " + quantity(*score) : " fail");
+    const bool has_share = score != nullptr && objective.maximise && record->value > 0 && score->value > 0;
+    if (has_share && of == std::string_view("children"))
+      text += ", " + percent(score->value / record->value) + " of it";
   }
   return text + ".";
 }
@@ -141,7 +141,7 @@ std::vector<std::string> sentences_on(const std::vector<SignalNumber>& numbers, 
   const Told told(numbers, has_last ? "last" : "random");
   std::vector<std::string> sentences = {on_repeatability(told, Told(numbers, "random"), settings,
                                                          has_last ? "robots of the last population" : "random robots"),
-                                        on_draws(told), on_heritability(told),
+                                        on_draws(told, settings), on_heritability(told),
                                         on_champion(Told(numbers, "champion"), objective)};
   std::erase(sentences, "");
   return sentences;

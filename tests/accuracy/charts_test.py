@@ -9,15 +9,16 @@ from accuracy import draw
 from common import results
 
 
-RANKING = "floor,body,kind,method,precision,dt (s),cost (s per simulated s),rank correlation (1),low (1),high (1)," \
+RANKING = "scene,body,kind,method,precision,dt (s),cost (s per simulated s),rank correlation (1),low (1),high (1)," \
     "best of 20 in reference's best 3 (1),diverged (1),robots\n"
 DATA = {
     "work_precision": "scene,reference,method,precision,dt (s),error (1),cost (s per simulated s),noise ceiling (1)\n"
     "a <b>,Odeint,paper-euler,float,0.0005,0.01,0.001,0\na <b>,Odeint,paper-euler,float,0.001,,0.0005,0\n"
     "a <b>,Odeint,rk4,double,0.0005,1e-6,0.01,0\n",
-    "ranking": RANKING + "elastic,as it is,reference moved by 1e-9 m,rk4,double,3e-5,0.05,0.99,0.98,1,1,0,500\n"
-    "elastic,as it is,setting,paper-euler,float,0.0005,0.001,0.9,0.8,1,0.9,0,500\n"
-    "elastic,32 masses,coarser body,paper-euler,float,0.0005,0.0005,0.2,0.1,0.3,0.4,0,500\n",
+    "ranking": RANKING + "elastic floor,as it is,reference moved by 1e-9 m,rk4,double,3e-5,0.05,0.99,0.98,1,1,0,500\n"
+    "elastic floor,as it is,another life,paper-euler,float,0.0005,0.001,0.625,0.5,0.7,0.8,0,500\n"
+    "elastic floor,as it is,setting,paper-euler,float,0.0005,0.001,0.9,0.8,1,0.9,0,500\n"
+    "elastic floor,32 masses,coarser body,paper-euler,float,0.0005,0.0005,0.2,0.1,0.3,0.4,0,500\n",
     "convergence": "scene,contact,method,dt (s),error (1)\nspring,no,rk4,0.004,1e-8\nspring,no,rk4,0.002,6e-10\n",
     "orders": "scene,contact,method,order in theory,observed order\nspring,no,rk4,4,3.99\n",
     "beam": "length (voxels),deflection (m),Euler-Bernoulli deflection (m),first frequency (Hz),"
@@ -90,12 +91,17 @@ class Charts(unittest.TestCase):
         for told in ("99.0 to 101.0 %", "0.1 kg: the best ten keep 98 % of their fitness at dt / 4"):
             self.assertIn(told, "\n".join(texts))
 
-    def test_ranking_has_a_row_for_each_floor(self):
+    def test_ranking_has_a_row_for_each_scene_and_tells_what_another_life_says(self):
         self.write("ranking")
         rows = (self.folder / "ranking.csv").read_text()
-        (self.folder / "ranking.csv").write_text(rows + rows.split("\n", 1)[1].replace("elastic,", "rigid,"))
-        titles = [axes.get_title("left") for axes in draw.ranking(self.folder, "").axes]
-        self.assertEqual([title.rsplit(", ")[-1] for title in titles], 2 * ["elastic floor"] + 2 * ["rigid floor"])
+        (self.folder / "ranking.csv").write_text(rows + rows.split("\n", 1)[1].replace("elastic floor,", "lively scene,"))
+        panels = draw.ranking(self.folder, "").axes
+        titles = [axes.get_title("left") for axes in panels]
+        self.assertEqual([title.rsplit(", ")[-1] for title in titles], 2 * ["elastic floor"] + 2 * ["lively scene"])
+        for axes, told in zip(panels, ("0.625", "0.800", "0.625", "0.800")):
+            lives = [text.get_text() for text in axes.texts if "another life" in text.get_text()]
+            self.assertEqual(len(lives), 1)
+            self.assertIn(told, lives[0])
 
 
 if __name__ == "__main__":

@@ -121,7 +121,7 @@ class Comparison(InOwnFolder):
     def refused_without_numbers(self, words):
         """Returns what is said if the row of a run that is gone has no numbers."""
         row = self.folder / "out" / "rows" / "plain" / "seed-1.json"
-        row.write_text(json.dumps(json.loads(row.read_text()) | {"signal": None}))
+        row.write_text(json.dumps(json.loads(row.read_text()) | {"robots": 0}))
         return self.refused(*words)
 
     def test_what_is_there_is_not_made_again(self):

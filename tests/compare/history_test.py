@@ -169,11 +169,15 @@ class Reports(unittest.TestCase):
         self.assertEqual(line.split(" | ")[-5:], ["5 of 5", "0 of 5", "0 of 5", "2 of 4", "4 of 4 |"])
 
     def test_lives_to_come_are_compared_where_all_runs_were_measured(self):
-        def measured(best, to_come, repeated=0.5):
+        def measured(best, to_come, repeated=0.5, new_draws=None):
             numbers = [("random", "repeatability", "one life", "rank", repeated),
                        ("random", "repeatability", "all lives", "rank", repeated + 0.25),
                        ("last", "heritability", "all children", "rank", 0.125),
-                       ("champion", "score", "record", "value", best)]
+                       ("champion", "score", "record", "value", best),
+                       ("champion", "failures", "lives to come", "share", 0 if to_come else 1)]
+            if new_draws is not None:
+                numbers += [("champion", "failures", "new draws", "share", 0),
+                            ("champion", "score", "new draws", "value", new_draws)]
             if to_come is not None:
                 numbers.append(("champion", "score", "lives to come", "value", to_come))
             keys = ("population", "quantity", "of", "scale", "value")
@@ -195,6 +199,10 @@ class Reports(unittest.TestCase):
             {Variant(pathlib.Path(name), births=births): [history(each, FAR) for each in some]
              for name, births, some in (("a", 0, sound), ("b", 0, lucky), ("b", 5, sound))}, FAR, "a")
         self.assertRegex(beside, r"\n\| `a` .*\| - \| - \|\n\| `b` .* 0.00 \(.*\n\| `b,random` .* 0.50 \(")
+        developing = [measured(3, 3, new_draws=2)] * 3
+        rows = section(FAR, a=sound, b=developing, c=developing).splitlines()[-3:]
+        self.assertEqual([row.strip("| ").split(" | ")[7] for row in rows], ["-", "2", "2"])
+        self.assertEqual([row.strip("| ").split(" | ")[10] for row in rows], ["-"] * 3)  # `a` does not develop
         self.assertEqual(section(FAR, lucky=[*lucky, shown([1]) | {"signal": None}]), "")
         self.assertIn("`none`", section(FAR, lucky=lucky, none=[shown([None]) | {"signal": None}] * 3))
 

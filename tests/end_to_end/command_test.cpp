@@ -348,7 +348,7 @@ TEST_F(Command, SignalMeasuresAnExperimentAndARunWhichKeepsTheNumbers) {
 
   EXPECT_THAT(refusal({"signal", folder_, "--set", "experiment.lives=2"}), naming("--set", folder_, "is a run"));
   EXPECT_THAT(refusal({"signal", folder_, "--seed", "2"}), naming("--seed", folder_));
-  EXPECT_THAT(refusal({"signal", file_, "--robots", "7"}), naming("--robots 7", "8 to 10000"));
+  EXPECT_THAT(refusal({"signal", file_, "--robots", "7"}), naming("--robots 7", "8 to 1000"));
   EXPECT_THAT(refusal({"signal", file_, "--svg", file_}), naming("--svg", file_));
   EXPECT_THAT(refusal({"signal", scratch_ / "none"}), naming("none"));
 }

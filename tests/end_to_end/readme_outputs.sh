@@ -10,11 +10,11 @@ fi
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
-# Finds output files in commands: words after --out, --trajectory or >, the first or last word of a tool if it names a
+# Finds output files in commands: words after --out, --trajectory, --svg or >, the first or last word of a tool if it names a
 # file or folder, and the folders of new plugins, one of which also contains walk.toml.
 pages=$(find "$source" -name '*.md' -not -path "$source/build/*" -not -path '*/template/*' -not -path '*/node_modules/*')
 commands=$(while IFS= read -r page; do sed -n '/^```sh$/,/^```$/p' "$page"; done <<<"$pages" | sed 's/ *#.*//')
-outputs=$(sed -nE -e 's/.*(--out|--trajectory|>) ([^ ]+).*/\2/p' -e 's/^tools\/figure .* ([^ ]+)$/\1/p' \
+outputs=$(sed -nE -e 's/.*(--out|--trajectory|--svg|>) ([^ ]+).*/\2/p' -e 's/^tools\/figure .* ([^ ]+)$/\1/p' \
   -e 's/^tools\/(stress|accuracy) ([^ -][^ ]*).*/\2\/data.csv/p' -e 's/.*evodevo new [a-z]+ ([^ ]+).*/\1\/CMakeLists.txt/p' \
   -e 's/^tools\/evodevo run .*/runs\/some-1\/run.sqlite/p' -e 's/^tools\/compare .*/runs\/compare-some\/report.md/p' \
   -e 's/^tools\/tune .*/runs\/tune-some\/report.md/p' \

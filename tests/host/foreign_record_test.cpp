@@ -38,6 +38,7 @@ class ForeignRecord : public ::testing::Test {
            Observer{.generation_done = [&](const Summary& summary) { stop = summary.generation == 1; }});
     const ArchivedIndividual best = archive.known_individual(archive.best(1).front());
     archive.add_verifications({{best.id, best.result.objectives[0], {{"again", Status::ok, "", 0.3}}}});
+    archive.set_signal({{"champion", "score", "record", "value", 0.3, {}, {}, 1}}, 1);
     for (const std::uint32_t id : archive.best(12))
       if (const auto lives = archive.lives(id); !lives.empty() && !lives[0].empty()) recorded_ = id;
   }

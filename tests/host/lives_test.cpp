@@ -71,6 +71,15 @@ TEST(Lives, ThatCannotDifferAreRefusedWithTheKeysThatLetThem) {
   }
 }
 
+TEST(Lives, OfWhichOnlyOneIsLuckOfEachRobotItsOwnAreWarnedOf) {
+  const auto warnings = [](const std::vector<std::string>& values) { return small(values).warnings; };
+  EXPECT_THAT(warnings({"development.draws=individual"}),
+              ElementsAre(naming("development.draws = \"individual\"", "experiment.lives = 1", "inherited")));
+  EXPECT_THAT(warnings({}), ElementsAre());
+  EXPECT_THAT(warnings({"development.draws=individual", "development.control=no-change"}), ElementsAre());
+  EXPECT_THAT(warnings({"development.draws=individual", three, noisy}), ElementsAre());
+}
+
 TEST(Lives, AreThoseOfEachNumberWhateverElseIsEvaluatedAndTheirScoresBecomeOne) {
   const std::string hurt = "scenario=[{name='hurt', damage=0.2, start_noise=0.01, repeat=2}]";
   for (const std::string draws : {"inherited", "individual"}) {

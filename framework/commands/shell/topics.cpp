@@ -189,9 +189,12 @@ Topic heredity() {
            "parents are lucky ones, and their children always look worse. Intervals hold 95 % of 2,000 samples of "
            "robots, "
            "or families, drawn with replacement. By rank, a life that fails is worse than all others; by value, robots "
-           "with such a life are left out.",
+           "with such a life are left out. Robots that fail in all of these lives are left out of both. Luck that is "
+           "the "
+           "same for all robots in lives of one number counts as luck.",
            "With a repeatability r of one life, the mean of n lives has n r/(1 + (n - 1) r); 4 (1 - r)/r lives reach "
-           "0.8. A low heritability alone is not bad, since few small changes suffice to climb; none at all is random "
+           "0.8. Another measure may need fewer, such as distance with direction = \"any\". A low heritability alone "
+           "is not bad, since few small changes suffice to climb; none at all is random "
            "search. What counts is progress in lives to come, beside random search at the same cost, as `tools/compare "
            "--random --signal 60` measures it."},
       .definitions =
@@ -206,11 +209,13 @@ Topic heredity() {
             "those of each operator."},
            {"heritability / repeatability",
             "What it would be if each parent's score were the mean of endless lives: what mutation and crossover leave "
-            "of it."},
+            "of it. With draws = \"individual\" it is left out, since robots repeat draws that no child inherits."},
            {"equal bodies", "The share of the children whose body at birth is that of their parent."},
            {"score",
-            "The medians of parents and children. Of the best robot: its record, its median in ten lives to come, with "
-            "the draws of the run and with new ones, and that of twenty children."}},
+            "The medians of parents and children. Of the best robot: its record, its median in lives to come, ten "
+            "times as "
+            "many as it was selected by and combined in the same way, with the draws of the run and with new ones, and "
+            "that of twenty children. It has no median if half of them fail (failures)."}},
       .example = "evodevo signal runs/quickstart-1 --svg children.svg\n"};
 }
 

@@ -9,6 +9,7 @@
 #include "base/output_file.hpp"
 #include "base/text.hpp"
 #include "commands/commands.hpp"
+#include "commands/shell/builds.hpp"
 #include "commands/shell/options.hpp"
 #include "commands/shell/output/notices.hpp"
 #include "evolution/record_check.hpp"
@@ -21,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t most_robots = 10000;
+constexpr std::int64_t most_robots = 1000;
 
 void print(const std::vector<SignalNumber>& numbers) {
   std::size_t width = 13;
@@ -79,8 +80,14 @@ int signal(const Given& given) {
     refuse_changes(subject, given);
     archive.emplace(Archive::annotate(subject));
   }
-  const Experiment experiment = archive ? experiment_of(*archive, given) : given_experiment(subject, given);
+  // of an experiment with islands, the first; as for a run, the development of another run goes with its robots
+  const Experiment experiment =
+      archive ? experiment_of(*archive, given) : std::move(given_islands(subject, given).front());
   print_warnings(experiment.warnings);
+  if (given.contains("svg") && experiment.makes_children())
+    throw UsageError("--svg " + printable(given["svg"].as<std::string>()) + ": " + experiment.child_maker +
+                     " makes children of the whole population, so that there are no parents to draw them over; leave "
+                     "the option out");
   std::optional<OutputFile> chart;
   if (given.contains("svg")) {
     const auto file = given["svg"].as<std::string>();
@@ -91,12 +98,18 @@ int signal(const Given& given) {
     chart.emplace(file, "--svg " + printable(file));
   }
   const auto count = static_cast<std::size_t>(robots);
+  std::uint32_t generation = 0;  // whose population is measured
+  if (archive)
+    for (const Summary& summary : archive->generations()) generation = summary.generation;
   const MeasuredRobots measured = archive ? measured_of(*archive, experiment, count) : MeasuredRobots{count};
   const auto simulator = opened_simulator(experiment);
+  if (archive) warn_of_other_builds(experiment, *simulator, *archive);
   const Signal found = measure_signal(experiment, *simulator, measured, [](const std::string& what) {
     if (verbosity() != Verbosity::quiet) std::cerr << "measuring " << what << std::endl;
   });
-  if (archive) archive->set_signal(found.numbers);
+  for (const std::string& note : found.notes) std::cerr << "note: " << printable(note) << '\n';
+  if (archive && !archive->set_signal(found.numbers, generation))
+    std::cerr << "warning: the run has gone on meanwhile, and does not keep these numbers of an earlier population\n";
   const Objective& objective = experiment.objectives.front();
   if (chart) {
     chart->write(signal_chart(found, objective));

@@ -118,7 +118,7 @@ struct SignalNumber {
   std::string population;  ///< whose: "random", "last" or "champion"
   std::string quantity;    ///< such as "repeatability"
   std::string of;          ///< of what, such as "one life"
-  std::string scale;       ///< "rank", "share", or "value" in the unit of the first objective
+  std::string scale;       ///< "rank", "share", or "value": by value, and of scores in the unit of the first objective
   double value = 0;
   std::optional<double> low, high;  ///< 95 % interval
   std::int64_t count = 0;           ///< number of robots, children or lives that were measured
@@ -154,8 +154,9 @@ class Archive {
   /// that have lost their fitness, or have another, since they were chosen.
   void add_verifications(const std::vector<Verification>& verifications);
 
-  /// Stores what was measured of the run, in place of earlier numbers.
-  void set_signal(const std::vector<SignalNumber>& numbers);
+  /// Stores what was measured of the run, in place of earlier numbers. Returns false and stores nothing if `generation`
+  /// is no longer the last.
+  bool set_signal(const std::vector<SignalNumber>& numbers, std::uint32_t generation);
 
   const std::filesystem::path& folder() const;
   /// Returns whether the run's file is still the one that was opened; if it is not, written data are lost.

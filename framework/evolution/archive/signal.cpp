@@ -4,8 +4,11 @@
 
 namespace evodevo {
 
-void Archive::set_signal(const std::vector<SignalNumber>& numbers) {
+bool Archive::set_signal(const std::vector<SignalNumber>& numbers, std::uint32_t generation) {
   WriteTransaction transaction(*run_);
+  Statement later(*run_, "generations", "SELECT 1 FROM generations WHERE generation > ?");
+  later.bind(generation);
+  if (later.step()) return false;
   run_->execute("DELETE FROM signal");
   Statement insert(*run_, "signal", "INSERT INTO signal VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?)");
   std::uint32_t position = 0;
@@ -13,6 +16,7 @@ void Archive::set_signal(const std::vector<SignalNumber>& numbers) {
     insert.execute(position++, number.population, number.quantity, number.of, number.scale, number.value, number.low,
                    number.high, number.count);
   transaction.commit();
+  return true;
 }
 
 std::vector<SignalNumber> Archive::signal() const {

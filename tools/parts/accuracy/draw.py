@@ -111,6 +111,9 @@ def draw_ranking(axes, rows, quantity, title, name, has_intervals):
     axes.set(xlim=(cheapest / 10, dearest), ylim=(min(0.0, *column(settings + coarser, quantity)), 1.05))
     axes.axhline(ceiling, color=SOFT, linestyle="--", linewidth=0.8)
     note(axes, (cheapest / 10, ceiling), f"the reference, started 1e-9 m away: {ceiling:.3f}", (3, 6), color=SOFT)
+    for life in (row[quantity] for row in rows if row["kind"] == "another life"):
+        axes.axhline(life, color=SOFT, linestyle=":", linewidth=1.2)
+        note(axes, (cheapest / 10, life), f"another life, started 1e-4 m away: {life:.3f}", (3, -12), color=SOFT)
     labels = []
     for (method, precision), points in groups(settings, "method", "precision").items():
         draw_method(axes, points, cost, quantity, method, precision)
@@ -132,9 +135,9 @@ def ranking(folder, origin):
     if rows is None:
         return None
     steps = sorted({row["dt (s)"] for row in rows if row["kind"] == "setting"})
-    floors = groups(rows, "floor")
+    scenes = groups(rows, "scene")
     figure, panels = charts.page(
-        2 * len(floors),
+        2 * len(scenes),
         2,
         (4.4, 3.8),
         title="What evolution sees: the fitness of random robots under each setting against the reference",
@@ -142,11 +145,11 @@ def ranking(folder, origin):
         f"{steps[0] * 1e3:g} ms (right) · bars: 95 % intervals · grey: coarser bodies with the defaults",
         footer=origin,
     )
-    for i, ((floor,), on_floor) in enumerate(floors.items()):
-        title = f"Rank correlation of fitness with the reference, {floor} floor"
-        draw_ranking(panels[2 * i], on_floor, "rank correlation (1)", title, "rank correlation with the reference", True)
-        title = f"How often the best of 20 is among the reference's best 3, {floor} floor"
-        draw_ranking(panels[2 * i + 1], on_floor, "best of 20 in reference's best 3 (1)", title, "share", False)
+    for i, ((scene,), in_scene) in enumerate(scenes.items()):
+        title = f"Rank correlation of fitness with the reference, {scene}"
+        draw_ranking(panels[2 * i], in_scene, "rank correlation (1)", title, "rank correlation with the reference", True)
+        title = f"How often the best of 20 is among the reference's best 3, {scene}"
+        draw_ranking(panels[2 * i + 1], in_scene, "best of 20 in reference's best 3 (1)", title, "share", False)
     return figure
 
 

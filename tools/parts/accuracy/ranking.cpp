@@ -33,6 +33,27 @@ std::vector<Coarser> coarser_bodies() {
           {"6 neighbours", {few_neighbours}}, {"32 masses, 8 neighbours", {points("32"), fewer_neighbours}}};
 }
 
+/// A scene in which robots are ranked.
+struct Ranked {
+  std::string name;
+  std::vector<Override> overrides;
+};
+
+/// The experiment's own scene, the same with a rigid floor, and one on a rigid floor that holds robots back so little
+/// that they are fast and chance decides more: with a quarter of the damping, twice the friction, and stronger and
+/// faster muscles with dashpots.
+std::vector<Ranked> ranked_scenes() {
+  const Override rigid{"scene.floor.restitution", "0"};
+  std::vector<Override> lively = {rigid, {"scene.damping.rate", "5"}, {"scene.friction.coefficient", "1"}};
+  for (const char* muscle : {"muscle", "muscle2"}) {
+    lively.push_back({std::string("materials.") + muscle + ".frequency", "4"});
+    lively.push_back({std::string("materials.") + muscle + ".amplitude", "0.2"});
+  }
+  for (const char* material : {"muscle", "muscle2", "tissue", "bone"})
+    lively.push_back({std::string("materials.") + material + ".damping", "0.5"});
+  return {{"elastic floor", {}}, {"rigid floor", {rigid}}, {"lively scene", lively}};
+}
+
 std::vector<Override> overrides(const Settings& settings) {
   if (!settings.quick) return {};
   return {{"fitness.0.settle", "1.5"}, {"fitness.0.window", "1.5"}};
@@ -64,13 +85,13 @@ Fitnesses measure_coarser(const Experiment& experiment, const std::vector<Genome
 /// A table whose rows compare measured fitnesses with those of the reference.
 class Comparison {
  public:
-  /// Adds rows for robots on a floor, whose true fitnesses are `truth`, to `table`.
-  Comparison(Table& table, std::string floor, std::vector<double> truth)
-      : table_(table), floor_(std::move(floor)), truth_(std::move(truth)) {}
+  /// Adds rows for robots in a scene, whose fitnesses there are compared with `truth`, to `table`.
+  Comparison(Table& table, std::string scene, std::vector<double> truth)
+      : table_(table), scene_(std::move(scene)), truth_(std::move(truth)) {}
 
   void add(const std::string& body, const std::string& kind, const Setting& setting, const Fitnesses& measured) {
     const Interval interval = bootstrap_interval(truth_, measured.values, 500);
-    table_.add({floor_, body, kind, std::string(name(setting.method)), name(setting.precision), setting.dt,
+    table_.add({scene_, body, kind, std::string(name(setting.method)), name(setting.precision), setting.dt,
                 measured.cost, rank_correlation(truth_, measured.values), interval.low, interval.high,
                 best_found(truth_, measured.values, 20, 3, 2000), measured.diverged,
                 static_cast<double>(truth_.size())});
@@ -78,28 +99,30 @@ class Comparison {
 
  private:
   Table& table_;
-  std::string floor_;
+  std::string scene_;
   std::vector<double> truth_;
 };
 
-void compare(Table& table, const Settings& settings, bool on_rigid_floor) {
-  const auto on_floor = [&](Experiment experiment) {
-    if (on_rigid_floor) experiment.scene.floor = rigid_floor;
-    return experiment;
-  };
-  const Experiment experiment = on_floor(experiment_of(settings));
+void compare(Table& table, const Settings& settings, const Ranked& scene) {
+  const Experiment experiment = experiment_of(settings, scene.overrides);
   std::vector<std::pair<std::string, Experiment>> coarser;  // read first, so that their faults cost no time
-  for (const Coarser& one : coarser_bodies())
-    coarser.emplace_back(one.name, on_floor(experiment_of(settings, one.overrides)));
+  for (const Coarser& one : coarser_bodies()) {
+    std::vector<Override> both = scene.overrides;
+    both.insert(both.end(), one.overrides.begin(), one.overrides.end());
+    coarser.emplace_back(one.name, experiment_of(settings, both));
+  }
   const std::vector<Genome> genomes = random_genomes(experiment, settings.robots, 1);
   std::vector<Body> bodies;
   for (const Genome& genome : genomes) bodies.push_back(*robot_of(experiment, genome));
 
   const Device host{"cpu", settings.device.threads};
   const Fitnesses truth = measure(experiment, bodies, reference, host);
-  Comparison comparison(table, on_rigid_floor ? "rigid" : "elastic", truth.values);
+  Comparison comparison(table, scene.name, truth.values);
   comparison.add("as it is", "reference moved by 1e-9 m", reference,
                  measure(experiment, bodies, reference, host, 1e-9));
+  // what the fitness of one life says of that of another one: above that, differences between settings matter little
+  Comparison(table, scene.name, measure(experiment, bodies, usual, settings.device).values)
+      .add("as it is", "another life", usual, measure(experiment, bodies, usual, settings.device, 1e-4));
   for (const Method method : all_methods())
     for (const Precision precision : {Precision::float32, Precision::float64})
       for (const double dt : time_steps(settings.quick)) {
@@ -113,10 +136,10 @@ void compare(Table& table, const Settings& settings, bool on_rigid_floor) {
 }  // namespace
 
 std::vector<Table> ranking(const Settings& settings) {
-  Table table("ranking", {"floor", "body", "kind", "method", "precision", "dt (s)", "cost (s per simulated s)",
+  Table table("ranking", {"scene", "body", "kind", "method", "precision", "dt (s)", "cost (s per simulated s)",
                           "rank correlation (1)", "low (1)", "high (1)", "best of 20 in reference's best 3 (1)",
                           "diverged (1)", "robots"});
-  for (const bool on_rigid_floor : {false, true}) compare(table, settings, on_rigid_floor);
+  for (const Ranked& scene : ranked_scenes()) compare(table, settings, scene);
   return {table};
 }
 

@@ -10,10 +10,10 @@ TEXT = f"""\
 `evodevo signal` measured every run when it had ended, in lives that selection has not seen. **Repeatability** is the share
 of the differences between scores, by rank, that lies between robots and not between lives of one, of the combination of
 lives that selection sees; **heritability** is the share of the differences between parents, by rank, that their children
-get: both of random robots, as medians of the runs, and of the last populations. **Lives to come** is the median of ten
-lives of the best robot of each run, chosen by its record, with the development's draws of the run and with new ones; its
-**children** are 20. A12 compares lives to come with those of the experiment's random search, if there is one, and
-otherwise with the experiment that is tested against; a robot that fails in all of them is below all others.
+get: both of random robots, as medians of the runs, and of the last populations. **Lives to come** is the median score of
+the best robot of each run, chosen by its record, in ten times as many lives as it was selected by, with the development's
+draws of the run and with new ones; its **children** are 20. A12 compares lives to come with those of the experiment's random search, if there is one, and
+otherwise with the experiment that is tested against; a robot that fails in half of them is below all others.
 """
 
 
@@ -30,6 +30,11 @@ def repeatability(numbers, population):
 
 def heritability(numbers, population):
     return numbers.get((population, "heritability", "all children", "rank"))
+
+
+def is_measured(runs, of):
+    """Returns whether such a score of the best robot was measured in any run."""
+    return any(("champion", "failures", of, "share") in numbers_of(run.signal) for run in runs)
 
 
 def score_of(runs, of, worst):
@@ -66,7 +71,7 @@ def section(histories, objective, against):
         baseline = of_name.get(f"{variant.name},random", of_name[against])
         for of in ("lives to come", "new draws"):
             scores, others = (score_of(some, of, objective.worst) for some in (runs, baseline))
-            is_told = runs is not baseline and any(map(math.isfinite, scores))
+            is_told = runs is not baseline and is_measured(runs, of) and is_measured(baseline, of)
             row.append(beside(scores, others, objective) if is_told else "-")
         rows.append(row)
     header = ["", *(f"{what}, {whose}" for whose in ("random", "last") for what in ("repeatability", "heritability"))]

@@ -27,11 +27,12 @@ def provenance(shown):
     return shown | {"operators": operators}
 
 
-def pack(shown):
-    """Returns the row of a run, given the output of `evodevo show --json`: one list for each quantity, instead of one
+def pack(shown, robots):
+    """Returns the row of a run, given the output of `evodevo show --json`, and how many robots were measured of it: one list for each quantity, instead of one
     object for each generation."""
     row = {key: shown[key] for key in KEYS}
     row["signal"] = (shown["signal"] or {}).get("numbers")
+    row["robots"] = robots
     row["provenances"] = [provenance(each) for each in row["provenances"]]
     row["generations"] = {column: [each[column] for each in shown["generations"]] for column in COLUMNS}
     return row
@@ -39,7 +40,7 @@ def pack(shown):
 
 def unpack(row):
     """Returns a row in the form of the output of `evodevo show --json`."""
-    shown = {key: row[key] for key in KEYS} | {"signal": row.get("signal")}  # older rows have none
+    shown = {key: row[key] for key in KEYS} | {"signal": row.get("signal"), "robots": row.get("robots", 0)}  # older rows have none
     generations = row["generations"]
     generations.setdefault("lucky", [0] * len(generations["evaluations"]))  # of rows of before there was this status
     columns = [generations[column] for column in COLUMNS]
@@ -59,9 +60,9 @@ def store(file, values):
     unfinished.replace(file)
 
 
-def write(file, shown):
-    """Writes the row of a run, given the output of `evodevo show --json`."""
-    store(file, pack(shown))
+def write(file, shown, robots=0):
+    """Writes the row of a run, given the output of `evodevo show --json`, and how many robots were measured of it."""
+    store(file, pack(shown, robots))
 
 
 def read(file):

@@ -304,20 +304,22 @@ class Runs:
         return complete
 
     def measure(self, robots, jobs, tell):
-        """Measures so many robots of each run that was not measured yet, several runs at a time, and adds the numbers to
-        their rows."""
-        left = [run for run in self.all if not rows.read(run.row)["signal"]]
+        """Measures so many robots of each run of which not as many were measured yet, several runs at a time, and adds the
+        numbers to their rows. Nothing is measured of a run without a fitness."""
+        left = [run for run in self.all if (row := rows.read(run.row))["best"] is not None and row["robots"] != robots]
         for run in left:
             if not self._has_begun(run):
-                raise Failure(f"{run.folder}: is gone, and {run.row} has no signal; remove that file, and the run is made again")
+                raise Failure(
+                    f"{run.folder}: is gone, and {run.row} has not what --signal {robots} measures; remove that file, and "
+                    "the run is made again"
+                )
         with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
             for run, _ in zip(left, pool.map(lambda run: self._measure(run, robots), left)):
                 tell(f"{run.variant.name}, seed {run.seed} is measured")
 
     def _measure(self, run, robots):
-        if self._shown(run)["best"] is not None:
-            self._evodevo("signal", run.folder, "--robots", robots, "--quiet")
-        rows.write(run.row, self._shown(run))
+        self._evodevo("signal", run.folder, "--robots", robots, "--quiet")
+        rows.write(run.row, self._shown(run), robots)
 
     def shown(self, run):
         """Returns what comparisons use of the output of `evodevo show --json` for a run that is complete."""
