@@ -159,7 +159,8 @@ bool print_best(const Experiment& experiment, const Archive& archive) {
   remarks() << "      look at the run: " << shell_command({"show", folder}) << "\n      its body:        "
             << shell_command({"body", folder, "--individual", std::to_string(individual.id)})
             << "\n      a film of it:    " << shell_command({"film", folder, "--out", "film.mp4"})
-            << "\n      test others:     " << shell_command({"verify", folder, "--best", "10"}) << '\n';
+            << "\n      test others:     " << shell_command({"verify", folder, "--best", "10"})
+            << "\n      its next lives:  " << shell_command({"signal", folder}) << '\n';
   return true;
 }
 
