@@ -19,6 +19,7 @@
 #include "report/diversity.hpp"
 #include "report/lineage.hpp"
 #include "report/run_json.hpp"
+#include "signal/telling.hpp"
 
 namespace evodevo {
 namespace {
@@ -326,6 +327,16 @@ int show_islands(const fs::path& run, const Given& given) {
   return 0;
 }
 
+/// Shows a run, and what `signal` has measured of it, if it has.
+void show_run(const Archive& archive) {
+  Report(archive).print();
+  const std::vector<SignalNumber> signal = archive.signal();
+  if (signal.empty()) return;
+  std::cout << '\n';
+  for (const std::string& sentence : sentences_on(signal, recorded_settings(archive), archive.objectives().front()))
+    std::cout << wrapped(sentence) << '\n';
+}
+
 int show(const Given& given) {
   const fs::path folder = given["DIR"].as<std::string>();
   if (has_islands(folder)) return show_islands(folder, given);
@@ -338,7 +349,7 @@ int show(const Given& given) {
   else if (given.contains("json"))
     std::cout << json_text(run_json(archive, recorded_settings(archive))) << '\n';
   else
-    Report(archive).print();
+    show_run(archive);
   return 0;
 }
 

@@ -108,7 +108,7 @@ std::string on_heritability(const Told& told) {
     return text + percent(equal->value) + " of them have their parent's body: larger mutations would try more.";
   if (genetic != nullptr && high(*genetic) < half) return text + "Smaller mutations would let them be more alike.";
   if (low(*slope) > some) return text + "Mutations are small enough for selection.";
-  if (high(*slope) < half) return text + "Luck, or mutation, keeps them apart more than their genes do.";
+  if (high(*slope) < half) return text + "Luck or mutations outweigh what parents pass on.";
   return text + "More robots (--robots) would tell this more exactly.";
 }
 

@@ -335,9 +335,11 @@ TEST_F(Command, SignalMeasuresAnExperimentAndARunWhichKeepsTheNumbers) {
 
   run({"experiment.population=10"});
   EXPECT_TRUE(shown().at("signal").is_null());
+  EXPECT_THAT(show(), Not(HasSubstr("repeatability")));
   const std::string chart = scratch_ / "chart.svg";
   const auto measured = Json::parse(said({"signal", folder_, "--robots", "12", "--svg", chart, "--json", "--quiet"}));
   EXPECT_EQ(measured, shown().at("signal"));
+  EXPECT_THAT(show(), naming("repeatability", "heritability", "The best robot"));
   for (const char* population : {"random", "last", "champion"}) EXPECT_GE(of(measured, population), 3) << population;
   EXPECT_EQ(measured.at("unit"), "body lengths");
   for (const Json& one : measured.at("numbers"))

@@ -313,7 +313,8 @@ class Runs:
                     f"{run.folder}: is gone, and {run.row} has not what --signal {robots} measures; remove that file, and "
                     "the run is made again"
                 )
-        with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        # a process uses all cores, and those that share a GPU compile kernels of their own
+        with concurrent.futures.ThreadPoolExecutor(min(jobs, os.cpu_count() or 1)) as pool:
             for run, _ in zip(left, pool.map(lambda run: self._measure(run, robots), left)):
                 tell(f"{run.variant.name}, seed {run.seed} is measured")
 
