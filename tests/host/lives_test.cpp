@@ -31,7 +31,8 @@ namespace evodevo::EVODEVO_FILE {
 namespace {
 
 using ::testing::ElementsAre, ::testing::Each;
-using testing::naming, testing::planted, testing::Planted, testing::small, testing::Scorer, testing::score_by, testing::Told, testing::unwatched;
+using testing::naming, testing::planted, testing::Planted, testing::small, testing::Scorer, testing::score_by,
+    testing::Told, testing::unwatched;
 
 const Request brief{.settle = 0, .window = 0.02};
 const std::string noisy = "experiment.birth_noise=0.01", three = "experiment.lives=3";

@@ -13,7 +13,6 @@
 #include "commands/shell/options.hpp"
 #include "commands/shell/output/notices.hpp"
 #include "evolution/record_check.hpp"
-#include "evolution/resimulation.hpp"
 #include "signal/measuring.hpp"
 #include "signal/telling.hpp"
 
@@ -74,7 +73,7 @@ int signal(const Given& given) {
   if (robots < static_cast<std::int64_t>(least_robots) || robots > most_robots)
     throw UsageError("--robots " + std::to_string(robots) + ": expected " + std::to_string(least_robots) + " to " +
                      std::to_string(most_robots));
-  const auto subject = given["EXPERIMENT.toml|DIR"].as<std::string>();
+  const auto subject = given["PATH"].as<std::string>();
   std::optional<Archive> archive;
   if (fs::is_directory(subject)) {
     refuse_changes(subject, given);
@@ -136,14 +135,14 @@ Command signal_command() {
   add_experiment_options(options);
   return {
       .name = "signal",
-      .arguments = {{"EXPERIMENT.toml|DIR"}},
+      .arguments = {{"PATH"}},
       .summary = "Measure what repeats in scores and what children inherit",
-      .text =
-          {"Random robots live again and again, and so do children that the experiment's mutation and crossover make "
-           "of them. The command says which share of the differences between scores lies between robots and not "
-           "between lives of one (repeatability), which share children inherit (heritability), and what would "
-           "help. Of a run, it also measures the last population and the best robot with its children, stores the "
-           "numbers in the run, and the next `report` shows them. `help heredity` explains the numbers."},
+      .text = {"PATH is the file of an experiment or the folder of a run. Random robots live again and again, and so "
+               "do children that the experiment's mutation and crossover make "
+               "of them. The command says which share of the differences between scores lies between robots and not "
+               "between lives of one (repeatability), which share children inherit (heritability), and what would "
+               "help. Of a run, it also measures the last population and the best robot with its children, stores the "
+               "numbers in the run, and the next `report` shows them. `help heredity` explains the numbers."},
       .examples = {"signal experiments/quickstart.toml", "signal runs/quickstart-1 --svg children.svg",
                    "signal experiments/walker.toml --robots 200 --json"},
       .options = options,
