@@ -175,8 +175,16 @@ TEST(Experiments, TheControlsOfStudiesDifferInTheControlAlone) {
 }
 
 TEST(Experiments, WalkersThatCreepSettleTenSeconds) {
-  for (const char* name : {"evo.toml", "evo-devo.toml", "growth.toml"})
-    EXPECT_EQ(read(name).fitness.at(0).op->observes().settle, 10) << name;
+  constexpr double weak_damping = 10;
+  int creeping = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(experiments)) {
+    if (entry.path().extension() != ".toml" || entry.path().filename() == "paper.toml") continue;
+    const Experiment experiment = read(entry.path());
+    if (!experiment.scene.floor || experiment.scene.damping->rate < weak_damping) continue;
+    ++creeping;
+    EXPECT_EQ(experiment.fitness.at(0).op->observes().settle, 10) << entry.path();
+  }
+  EXPECT_GE(creeping, 2);
   const Experiment swimmer = read("swimmer.toml");
   EXPECT_EQ(swimmer.fitness.at(0).op->observes().settle, 0);
   EXPECT_TRUE(swimmer.scene.drag.has_value());

@@ -132,6 +132,23 @@ class IslandCommands : public ::testing::Test {
     return evodevo(joined({"run", file_, "--out", run_, "--device", "cpu", "--no-report"}, more));
   }
 
+  /// Signal measures the island with the best robot, and no other.
+  void expect_signal_of_the_best_island() const {
+    const std::string told = said({"signal", run_, "--robots", "12", "--json", "--quiet"});
+    const Json signal = Json::parse(told.substr(told.find('{')));  // after notes: populations are small
+    std::vector<double> best;
+    for (const fs::path& island : evodevo::island_folders(run_)) {
+      const Json shown = Json::parse(said({"show", island, "--json"}));
+      best.push_back(shown.at("best").at("objectives").at("distance"));
+      EXPECT_EQ(shown.at("signal").is_null(), shown.at("signal") != signal) << island;
+    }
+    ASSERT_EQ(best.size(), 3);
+    for (const Json& one : signal.at("numbers"))
+      if (one.at("of") == "record") {
+        EXPECT_EQ(one.at("value"), *std::ranges::max_element(best));
+      }
+  }
+
   Scratch scratch_;
   const std::string file_ = scratch_.write("islands.toml", small_islands);
   const std::string run_ = (scratch_ / "run").string();
@@ -161,6 +178,7 @@ TEST_F(IslandCommands, ReadTheRunOrOneOfItsIslandsAndContinueOnlyTheWholeRun) {
   EXPECT_EQ(begin().exit_code, 2) << "the folder is not empty";
   const fs::path straight = scratch_ / "straight";
   fs::copy(run_, straight, fs::copy_options::recursive);
+  expect_signal_of_the_best_island();
   fs::remove_all(second_);
   EXPECT_THAT(refusal({"resume", run_}), naming(second_, "3 islands"));
   EXPECT_EQ(begin({"--resume"}).exit_code, 2) << "the other islands have generations";

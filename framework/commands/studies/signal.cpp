@@ -12,6 +12,7 @@
 #include "commands/shell/builds.hpp"
 #include "commands/shell/options.hpp"
 #include "commands/shell/output/notices.hpp"
+#include "evolution/islands/island_folders.hpp"
 #include "evolution/record_check.hpp"
 #include "signal/measuring.hpp"
 #include "signal/telling.hpp"
@@ -47,6 +48,27 @@ void refuse_changes(const std::string& folder, const Given& given) {
                        " is a run, which has its settings; leave the option out, or give the file of an experiment");
 }
 
+/// Returns the folder of the archive that is measured: of a run with islands, that of the island with the best robot.
+fs::path measured_folder(const fs::path& run) {
+  const std::vector<fs::path> folders = archive_folders(run);
+  fs::path measured = folders.front();
+  if (folders.size() == 1) return measured;
+  std::optional<double> highest;
+  for (const fs::path& folder : folders) {
+    const Archive island = Archive::read(folder);
+    const std::vector<std::uint32_t> best = island.best(1);
+    if (best.empty()) continue;
+    const double sign = island.objectives().front().maximise ? 1 : -1;
+    const double score = sign * island.known_individual(best.front()).result.objectives.front();
+    if (highest && score <= *highest) continue;
+    highest = score;
+    measured = folder;
+  }
+  if (verbosity() != Verbosity::quiet)
+    std::cerr << "measuring " << printable(measured.string()) << ", the island with the best robot" << std::endl;
+  return measured;
+}
+
 /// Returns the experiment of a run, on the machine that the options ask for.
 Experiment experiment_of(const Archive& archive, const Given& given) {
   const std::vector<Override> machine = given_machine(given);
@@ -77,7 +99,7 @@ int signal(const Given& given) {
   std::optional<Archive> archive;
   if (fs::is_directory(subject)) {
     refuse_changes(subject, given);
-    archive.emplace(Archive::annotate(subject));
+    archive.emplace(Archive::annotate(measured_folder(subject)));
   }
   // of an experiment with islands, the first; as for a run, the development of another run goes with its robots
   const Experiment experiment =
@@ -91,7 +113,7 @@ int signal(const Given& given) {
   if (given.contains("svg")) {
     const auto file = given["svg"].as<std::string>();
     std::vector<fs::path> inputs = libraries_of(experiment);
-    for (const fs::path& input : archive ? files_of_run(subject) : std::vector<fs::path>{subject})
+    for (const fs::path& input : archive ? files_of_run(archive->folder()) : std::vector<fs::path>{subject})
       inputs.push_back(input);
     refuse_to_overwrite("--svg", file, inputs);
     chart.emplace(file, "--svg " + printable(file));
@@ -142,7 +164,9 @@ Command signal_command() {
                "of them. The command says which share of the differences between scores lies between robots and not "
                "between lives of one (repeatability), which share children inherit (heritability), and what would "
                "help. Of a run, it also measures the last population and the best robot with its children, stores the "
-               "numbers in the run, and the next `report` shows them. `help heredity` explains the numbers."},
+               "numbers in the run, and the next `report` shows them. Of a run with islands, it measures the island "
+               "with the "
+               "best robot. `help heredity` explains the numbers."},
       .examples = {"signal experiments/quickstart.toml", "signal runs/quickstart-1 --svg children.svg",
                    "signal experiments/walker.toml --robots 200 --json"},
       .options = options,

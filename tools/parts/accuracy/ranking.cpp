@@ -115,11 +115,10 @@ void compare(Table& table, const Settings& settings, const Ranked& scene) {
   std::vector<Body> bodies;
   for (const Genome& genome : genomes) bodies.push_back(*robot_of(experiment, genome));
 
-  const Device host{"cpu", settings.device.threads};
-  const Fitnesses truth = measure(experiment, bodies, reference, host);
+  const Fitnesses truth = measure(experiment, bodies, reference, settings.device);
   Comparison comparison(table, scene.name, truth.values);
   comparison.add("as it is", "reference moved by 1e-9 m", reference,
-                 measure(experiment, bodies, reference, host, 1e-9));
+                 measure(experiment, bodies, reference, settings.device, 1e-9));
   // what the fitness of one life says of that of another one: above that, differences between settings matter little
   Comparison(table, scene.name, measure(experiment, bodies, usual, settings.device).values)
       .add("as it is", "another life", usual, measure(experiment, bodies, usual, settings.device, 1e-4));
