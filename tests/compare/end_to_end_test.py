@@ -2,9 +2,11 @@
 
 import contextlib
 import csv
+import itertools
 import json
 import os
 import pathlib
+import re
 import shlex
 import shutil
 import signal
@@ -22,6 +24,9 @@ from small_experiment import small_experiment
 COMPARE = [sys.executable, "-P", "-m", "compare"]
 
 PLAIN, DEVELOPING = small_experiment(), small_experiment(development=True)
+
+# tables of an archive that are empty before its first generation
+OF_GENERATIONS = "individuals scores life_scores tests lives generations immigrants emigrants verifications signal".split()
 
 
 class Comparison(InOwnFolder):
@@ -262,15 +267,44 @@ class Comparison(InOwnFolder):
             shutil.rmtree(self.folder / "out" / kind / "plain")
         self.compared()
 
-    def test_islands_are_refused_and_nothing_is_lost(self):
-        settings = "islands={count=2, topology='ring', every=1, migrants=1, emigrants='best', replaced='worst'}"
-        run = self.folder / "out" / "runs" / "plain" / "seed-1" / "island-1" / "run.sqlite"
-        run.parent.mkdir(parents=True)
-        run.touch()
-        self.assertRegex(self.refused("--set", settings), r"\A.*--set islands=.*\n\Z")
-        self.plain.write_text(f"{PLAIN}\n[islands]\ncount = 2\n")
-        self.assertRegex(self.refused(), rf"\A.*{self.plain}: islands: .*\n\Z")
-        self.assertTrue(run.exists())
+    def test_a_run_with_islands_counts_as_one(self):
+        self.plain.write_text(PLAIN.replace("evaluations = 20", "evaluations = 31") + "\n[islands]\ncount = 2\nevery = 1\n")
+        runs = self.folder / "out" / "runs" / "plain"
+        words = ("--random", "--signal", "16", "--against", "developing,random")
+        report = self.compared(*words)
+        standings = report.split("## What repeats")[1].split("\n## ")[0]
+        self.assertEqual(re.findall(r"^\| `(.*?)`", standings, re.M), ["plain", "developing", "developing,random"])
+        for seed in (1, 2):
+            row = json.loads((self.folder / "out" / "rows" / "plain" / f"seed-{seed}.json").read_text())
+            islands = self.shown_islands(runs / f"seed-{seed}")
+            objective = row["objectives"][0]["name"]
+            bests = [island["best"]["objectives"][objective] for island in islands]
+            self.assertEqual(row["best"]["objectives"][objective], max(bests))
+            self.assertIsNotNone(row["best"]["verification"])
+            self.assertEqual(row["signal"], islands[bests.index(max(bests))]["signal"]["numbers"])
+            generations = [island["generations"] for island in islands]
+            self.assertEqual(sorted(map(len, generations)), [3, 4])  # 15 and 16 evaluations
+            self.assertEqual(row["generations"]["evaluations"], [10, 20, 30, 31])
+            self.assertEqual(
+                sum(row["generations"]["spring_evaluations"]),
+                sum(each["spring_evaluations"] for each in itertools.chain.from_iterable(generations)),
+            )
+            self.assertEqual(
+                row["generations"]["best"],
+                [max(each["best"] for each in there if each) for there in itertools.zip_longest(*generations)],
+            )
+
+        # without rows, complete runs are read again, and one that was killed between its islands goes on
+        shutil.rmtree(self.folder / "out" / "rows")
+        shutil.rmtree(runs / "seed-1" / "island-2")
+        with self.changed("plain/seed-1/island-1") as island:
+            for table in OF_GENERATIONS:
+                island.execute(f"DELETE FROM {table}")
+        self.assertEqual(self.compared(*words).split("## ")[1:4], report.split("## ")[1:4])
+
+    def shown_islands(self, run):
+        said = subprocess.run([PROGRAM, "show", run, "--json"], check=True, capture_output=True, text=True).stdout
+        return json.loads(said)["islands"]
 
     def test_files_that_cannot_be_read_are_named(self):
         self.finished()

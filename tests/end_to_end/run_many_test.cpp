@@ -82,8 +82,13 @@ TEST_F(RunMany, ARunOrAnIslandThatFailsDoesNotEndOthers) {
   Words failing = arguments("failing", {"--plugin-path", (fs::path(EVODEVO_FAULTY_PLUGINS) / "throws").string()});
   failing.front() = scratch_.write("islands.toml", islands);
   const Words wrong = arguments("wrong", {"--set", "experiment.population=none"});
-  const std::string output = output_of(command({wrong, failing, arguments("right"), arguments("wrong/of/")}, 1), 1);
-  EXPECT_EQ(codes(output), (std::map<int, int>{{0, 2}, {1, 1}, {2, 0}, {3, 0}}));
+  Words whole = arguments("islands");
+  whole.front() = scratch_.write("whole.toml", small_islands);
+  const std::string output =
+      output_of(command({wrong, failing, arguments("right"), arguments("wrong/of/"), whole}, 1), 1);
+  EXPECT_EQ(codes(output), (std::map<int, int>{{0, 2}, {1, 1}, {2, 0}, {3, 0}, {4, 0}}));
+  EXPECT_EQ(std::ranges::count(output, '\n'), 5) << output;
+  EXPECT_THAT(log_of("islands"), naming("evaluations 104/104", "best: individual"));
   EXPECT_THAT(log_of("wrong"), naming("experiment.population", "\"none\"", "expected"));
   EXPECT_THAT(log_of("failing"), naming("nothing to mutate", "island"));
   EXPECT_THAT(log_of("wrong/of"), naming("best: individual"));

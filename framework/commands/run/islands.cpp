@@ -168,7 +168,8 @@ int report_outcome(Islands& islands, Simulator& simulator, const IslandsProgress
 int evolve_and_report(Islands& islands, Simulator& simulator, const std::atomic<bool>& stop, const RunOutput& output) {
   const bool is_live = prints_on_terminal() && verbosity() != Verbosity::quiet;
   const auto progress = progress_of(islands, stop, is_live);
-  const auto tell = [&](std::int64_t island, const Summary& summary) {
+  const auto tell = [&, target = OutputOfThread::target()](std::int64_t island, const Summary& summary) {
+    const OutputOfThread to(target);  // this is the thread of an island, but its lines are the run's
     progress->generation_done(island, summary);
     output.generation_done(summary, island);
   };

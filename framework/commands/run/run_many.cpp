@@ -114,7 +114,7 @@ int made(const Given& run) {
     std::cerr << "evodevo: " + printable(log.string()) + ": cannot be written; give the run another --out\n";
     return 2;
   }
-  const OutputOfThread output(*stream.rdbuf());
+  const OutputOfThread output(stream.rdbuf());
   return or_complain([&] { return make_run(run); });
 }
 

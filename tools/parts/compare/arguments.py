@@ -45,7 +45,7 @@ def parse(words):
     add(
         "--random",
         action="store_true",
-        help="also make each experiment as a random search at the same cost, in which nobody has children",
+        help="also make each experiment without islands as a random search at the same cost, in which nobody has children",
     )
     add(
         "--signal",

@@ -12,8 +12,9 @@ of the differences between scores, by rank, that lies between robots and not bet
 lives that selection sees; **heritability** is the share of the differences between parents, by rank, that their children
 get: both of random robots, as medians of the runs, and of the last populations. **Lives to come** is the median score of
 the best robot of each run, chosen by its record, in ten times as many lives as it was selected by, with the development's
-draws of the run and with new ones; its **children** are 20. A12 compares lives to come with those of the experiment's random search, if there is one, and
-otherwise with the experiment that is tested against; a robot that fails in half of them is below all others.
+draws of the run and with new ones; its **children** are 20. A12 compares lives to come with those of the experiment's
+random search, if there is one, and otherwise with the experiment that is tested against; a robot that fails in half of
+them is below all others.
 """
 
 

@@ -28,8 +28,8 @@ def provenance(shown):
 
 
 def pack(shown, robots):
-    """Returns the row of a run, given the output of `evodevo show --json`, and how many robots were measured of it: one list for each quantity, instead of one
-    object for each generation."""
+    """Returns the row of a run, given the output of `evodevo show --json`, and how many robots were measured of it: one
+    list for each quantity, instead of one object for each generation."""
     row = {key: shown[key] for key in KEYS}
     row["signal"] = (shown["signal"] or {}).get("numbers")
     row["robots"] = robots
@@ -40,7 +40,8 @@ def pack(shown, robots):
 
 def unpack(row):
     """Returns a row in the form of the output of `evodevo show --json`."""
-    shown = {key: row[key] for key in KEYS} | {"signal": row.get("signal"), "robots": row.get("robots", 0)}  # older rows have none
+    shown = {key: row[key] for key in KEYS}
+    shown |= {"signal": row.get("signal"), "robots": row.get("robots", 0)}  # older rows have none
     generations = row["generations"]
     generations.setdefault("lucky", [0] * len(generations["evaluations"]))  # of rows of before there was this status
     columns = [generations[column] for column in COLUMNS]

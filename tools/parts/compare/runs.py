@@ -17,9 +17,8 @@ import urllib.parse
 from common.command_line import NO_FITNESS, STOPPED, Failure
 
 from . import rows
+from .islands import as_one
 from .together import run_many, stop
-
-NO_ISLANDS = "runs with islands, which are several runs each, are not compared; leave the islands out"
 
 # Without these tables, their defaults apply. Any other table adds something to the experiment, such as an operator.
 TABLES_WITH_DEFAULTS = ("materials", "plugins", "simulation")
@@ -89,8 +88,6 @@ def refuse_key(key, option):
     """Refuses a key that no comparison may set."""
     if key == "experiment.seed":
         raise Failure(f"{option}: every run has a seed of its own; say how many with --seeds")
-    if key.split(".")[0] == "islands":
-        raise Failure(f"{option}: {NO_ISLANDS}")
 
 
 def parse_sweep(text):
@@ -130,12 +127,9 @@ def has_table_of(experiment, key):
 
 def read_experiment(file):
     try:
-        experiment = tomllib.loads(file.read_text())
+        return tomllib.loads(file.read_text())
     except (OSError, ValueError) as error:
         raise Failure(f"{file}: cannot be read: {error}") from None
-    if "islands" in experiment:
-        raise Failure(f"{file}: islands: {NO_ISLANDS}")
-    return experiment
 
 
 def read_experiments(files):
@@ -172,7 +166,7 @@ def births_of(variant, experiment):
 
 def make_variants(files, sweeps, settings, with_random=False):
     """Returns each experiment with every combination of values for those keys whose tables it has, and each of them as a
-    random search, too, if asked for."""
+    random search, too, if asked for. A random search has no use for islands, so those with islands have none."""
     experiments = read_experiments(files)
     refuse_keys(experiments.values(), sweeps, settings)
     variants = []
@@ -181,9 +175,14 @@ def make_variants(files, sweeps, settings, with_random=False):
         fixed = tuple((key, value) for key, value in settings if has_table_of(experiment, key))
         for swept in itertools.product(*values):
             variants.append(variant := Variant(file, swept, fixed))
-            if with_random:
+            if with_random and "islands" not in {*experiment, *(key.split(".")[0] for key, _ in (*fixed, *swept))}:
                 variants.append(dataclasses.replace(variant, births=births_of(variant, experiment)))
     return variants
+
+
+def databases_of_islands(run):
+    """Returns the databases of the islands of a run, the first island's first; none if it has no islands."""
+    return sorted(run.folder.glob("island-*/run.sqlite"))
 
 
 def overrides(variant):
@@ -298,7 +297,12 @@ class Runs:
             return True
         if not self._has_begun(run):
             return False
-        shown = self._shown(run)
+        try:
+            shown = self._shown(run)
+        except Failure:
+            if not databases_of_islands(run):
+                raise
+            return False  # it may have been killed between two islands: then it goes on, or says what is wrong
         if complete := shown["finished"] and shown["verified"]:
             rows.write(run.row, shown)
         return complete
@@ -327,12 +331,13 @@ class Runs:
         return rows.read(run.row)
 
     def _shown(self, run):
-        return json.loads(self._evodevo("show", run.folder, "--json"))
+        shown = json.loads(self._evodevo("show", run.folder, "--json"))
+        return as_one(shown["islands"]) if "islands" in shown else shown
 
     @staticmethod
     def _has_begun(run):
         """Returns whether a run has stored anything; it has not if it was killed just after its start."""
-        database = run.folder / "run.sqlite"
+        database = next(iter(databases_of_islands(run)), run.folder / "run.sqlite")
         if not database.exists():
             return False
         try:

@@ -29,14 +29,17 @@ class Switch final : public std::streambuf {
 
 }  // namespace
 
-OutputOfThread::OutputOfThread(std::streambuf& target) {
+OutputOfThread::OutputOfThread(std::streambuf* target) : before_(target_of_thread) {
+  target_of_thread = target;
+  if (target == nullptr) return;
   // never destroyed, because threads may print until the process ends
   static const Switch *const output = new Switch(std::cout), *const errors = new Switch(std::cerr);
   static_cast<void>(output), static_cast<void>(errors);
-  target_of_thread = &target;
 }
 
-OutputOfThread::~OutputOfThread() { target_of_thread = nullptr; }
+OutputOfThread::~OutputOfThread() { target_of_thread = before_; }
+
+std::streambuf* OutputOfThread::target() { return target_of_thread; }
 
 bool prints_on_terminal() { return target_of_thread == nullptr && isatty(STDOUT_FILENO) == 1; }
 
