@@ -172,7 +172,6 @@ int film(const Given& given) {
   expect_ending(file, film_endings);
   const Shooting shooting = given_shooting(given, file.ends_with(".png"));
   refuse_to_overwrite("--out", file, files_of_run(folder));
-  const std::string page = page_template();
   const Archive archive = Archive::read(folder);
   const ArchivedIndividual shown = chosen_individual(archive, given);
   Cast cast = given.contains("individual") ? Cast{.best = 0, .best_of_others = 0, .individuals = {shown.id}}
@@ -180,6 +179,7 @@ int film(const Given& given) {
   const Experiment experiment = experiment_of_run(archive, given);
   cast.life = given_life(newborn_of(shown), experiment, given).life;
   refuse_to_overwrite("--out", file, libraries_of(experiment));
+  const std::string page = page_template();
   OutputFile output(file, file);
   const Json data = report_data({filmed_run(archive, experiment, given, cast, page_budget)});
   timed("drawing " + printable(file), [&] { shoot(filled_page(page, data), output, file, shooting); });

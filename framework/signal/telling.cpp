@@ -89,12 +89,14 @@ std::string on_draws(const Told& told, const Settings& settings) {
   if (same == nullptr || redrawn == nullptr) return "";
   const std::string text =
       "With other draws of development in each life, the repeatability of one is " + with_interval(*redrawn);
-  if (redrawn->value > same->value - loss) return text + ", so that little of the score depends on these draws.";
-  return text + ": much of the score depends on these draws. " + (settings.lives > 1 ? "Lives" : "Several lives") +
+  if (redrawn->value > same->value - loss) return text + ", so that these draws decide little.";
+  return text + ": which robots are ahead depends much on these draws. " +
+         (settings.lives > 1 ? "Lives" : "Several lives") +
          " with draws_between_lives = \"new\" select for robots that do not depend on them.";
 }
 
-std::string on_heritability(const Told& told) {
+/// `is_whole`: whether no more robots could be measured.
+std::string on_heritability(const Told& told, bool is_whole) {
   const SignalNumber *slope = told.find("heritability", "all children", "rank"),
                      *genetic = told.find("heritability / repeatability", "all children", "rank"),
                      *equal = told.find("equal bodies", "all children", "share");
@@ -109,7 +111,8 @@ std::string on_heritability(const Told& told) {
   if (genetic != nullptr && high(*genetic) < half) return text + "Smaller mutations would let them be more alike.";
   if (low(*slope) > some) return text + "Mutations are small enough for selection.";
   if (high(*slope) < half) return text + "Luck or mutations outweigh what parents pass on.";
-  return text + "More robots (--robots) would tell this more exactly.";
+  return text + (is_whole ? "Other runs would tell this more exactly, or a larger population."
+                          : "More robots (--robots) would tell this more exactly.");
 }
 
 std::string on_champion(const Told& told, const Objective& objective) {
@@ -125,8 +128,7 @@ std::string on_champion(const Told& told, const Objective& objective) {
     text += std::string("; ") + (score != nullptr ? "the median of " : "at least half of ") + whose +
             (score != nullptr ? " is " + quantity(*score) : " fail");
     const bool has_share = score != nullptr && objective.maximise && record->value > 0 && score->value > 0;
-    if (has_share && of == std::string_view("children"))
-      text += ", " + percent(score->value / record->value) + " of it";
+    if (has_share) text += ", " + percent(score->value / record->value) + " of it";
   }
   return text + ".";
 }
@@ -139,10 +141,12 @@ std::vector<std::string> sentences_on(const std::vector<SignalNumber>& numbers, 
   const bool has_last =
       std::ranges::any_of(numbers, [](const SignalNumber& number) { return number.population == "last"; });
   const Told told(numbers, has_last ? "last" : "random");
-  std::vector<std::string> sentences = {on_repeatability(told, Told(numbers, "random"), settings,
+  const SignalNumber* parents = told.find("score", "parents", "value");
+  const bool is_whole = has_last && parents != nullptr && parents->count >= settings.population;
+  std::vector<std::string> sentences = {on_champion(Told(numbers, "champion"), objective),
+                                        on_repeatability(told, Told(numbers, "random"), settings,
                                                          has_last ? "robots of the last population" : "random robots"),
-                                        on_draws(told, settings), on_heritability(told),
-                                        on_champion(Told(numbers, "champion"), objective)};
+                                        on_draws(told, settings), on_heritability(told, is_whole)};
   std::erase(sentences, "");
   return sentences;
 }

@@ -143,6 +143,9 @@ int signal(const Given& given) {
   print(found.numbers);
   for (const std::string& sentence : sentences_on(found.numbers, experiment, objective))
     std::cout << wrapped(sentence) << '\n';
+  if (archive)
+    remarks() << "the run keeps these numbers; a page with them: "
+              << shell_command({"report", archive->folder().string()}) << '\n';
   return 0;
 }
 
