@@ -273,6 +273,22 @@ TEST(Signal, OfTheBestRobotTellsWhatFailedAndWhatItsChildrenGet) {
   EXPECT_THAT(said_of_champion({{"lives to come", 5}, {"children", 8}}, false), Not(naming("%"))) << "less is better";
 }
 
+TEST(Signal, AdvisesMoreRobotsOnlyWhereThereAreMore) {
+  Experiment experiment = planted({});
+  experiment.population = 20;
+  const auto advice = [&](const std::string& population, std::int64_t robots) {
+    const std::vector<SignalNumber> numbers = {
+        {population, "repeatability", "one life", "rank", 0.9, 0.8, 0.95, robots},
+        {population, "score", "parents", "value", 1, {}, {}, robots},
+        {population, "heritability", "all children", "rank", 0.4, 0.1, 0.7, 80},
+        {population, "equal bodies", "all children", "share", 0, {}, {}, 80}};
+    return sentences_on(numbers, experiment, experiment.objectives[0]).back();
+  };
+  EXPECT_THAT(advice("random", 20), HasSubstr("--robots"));
+  EXPECT_THAT(advice("last", 19), HasSubstr("--robots"));
+  EXPECT_THAT(advice("last", 20), AllOf(HasSubstr("population"), Not(HasSubstr("--robots"))));
+}
+
 /// Scores are a gene and noise, and less is better in one of the two runs.
 TEST(Signal, OfARunIsThatOfItsLastPopulationAndItsBestRobot) {
   for (const bool maximise : {true, false}) {

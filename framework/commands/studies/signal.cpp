@@ -129,7 +129,8 @@ int signal(const Given& given) {
     if (verbosity() != Verbosity::quiet) std::cerr << "measuring " << what << std::endl;
   });
   for (const std::string& note : found.notes) std::cerr << "note: " << printable(note) << '\n';
-  if (archive && !archive->set_signal(found.numbers, generation))
+  const bool is_kept = archive && archive->set_signal(found.numbers, generation);
+  if (archive && !is_kept)
     std::cerr << "warning: the run has gone on meanwhile, and does not keep these numbers of an earlier population\n";
   const Objective& objective = experiment.objectives.front();
   if (chart) {
@@ -143,7 +144,7 @@ int signal(const Given& given) {
   print(found.numbers);
   for (const std::string& sentence : sentences_on(found.numbers, experiment, objective))
     std::cout << wrapped(sentence) << '\n';
-  if (archive)
+  if (is_kept)
     remarks() << "the run keeps these numbers; a page with them: "
               << shell_command({"report", archive->folder().string()}) << '\n';
   return 0;
@@ -168,8 +169,7 @@ Command signal_command() {
                "between lives of one (repeatability), which share children inherit (heritability), and what would "
                "help. Of a run, it also measures the last population and the best robot with its children, stores the "
                "numbers in the run, and the next `report` shows them. Of a run with islands, it measures the island "
-               "with the "
-               "best robot. `help heredity` explains the numbers."},
+               "with the best robot. `help heredity` explains the numbers."},
       .examples = {"signal experiments/quickstart.toml", "signal runs/quickstart-1 --svg children.svg",
                    "signal experiments/walker.toml --robots 200 --json"},
       .options = options,
