@@ -318,12 +318,15 @@ int show_islands(const fs::path& run, const Given& given) {
     print_islands(run);
     return 0;
   }
-  nlohmann::ordered_json islands = nlohmann::ordered_json::array();
+  nlohmann::ordered_json islands = nlohmann::ordered_json::array(), best_island = nullptr;
+  std::vector<Archive> archives;
   for (const fs::path& folder : island_folders(run)) {
-    const Archive archive = Archive::read(folder);
+    const Archive& archive = archives.emplace_back(Archive::read(folder));
     islands.push_back(run_json(archive, recorded_settings(archive)));
   }
-  std::cout << json_text({{"islands", std::move(islands)}}) << '\n';
+  if (const auto best = best_of_islands(archives, 1); !best.empty())
+    best_island = archives[best.front().island].island();
+  std::cout << json_text({{"best_island", best_island}, {"islands", std::move(islands)}}) << '\n';
   return 0;
 }
 

@@ -180,7 +180,7 @@ TEST(Experiments, WalkersThatCreepSettleTenSeconds) {
   for (const fs::directory_entry& entry : fs::directory_iterator(experiments)) {
     if (entry.path().extension() != ".toml" || entry.path().filename() == "paper.toml") continue;
     const Experiment experiment = read(entry.path());
-    if (!experiment.scene.floor || experiment.scene.damping->rate < weak_damping) continue;
+    if (!experiment.scene.floor || !experiment.scene.damping || experiment.scene.damping->rate < weak_damping) continue;
     ++creeping;
     EXPECT_EQ(experiment.fitness.at(0).op->observes().settle, 10) << entry.path();
   }

@@ -142,12 +142,14 @@ class IslandCommands : public ::testing::Test {
     const std::string told = said({"signal", run_, "--robots", "12", "--json", "--quiet"});
     const Json signal = Json::parse(told.substr(told.find('{')));  // after notes: populations are small
     std::vector<double> best;
-    for (const fs::path& island : evodevo::island_folders(run_)) {
+    for (const fs::path& island : island_folders(run_)) {
       const Json shown = Json::parse(said({"show", island, "--json"}));
       best.push_back(shown.at("best").at("objectives").at("distance"));
       EXPECT_EQ(shown.at("signal").is_null(), shown.at("signal") != signal) << island;
     }
     ASSERT_EQ(best.size(), 3);
+    const int best_island = Json::parse(said({"show", run_, "--json"})).at("best_island");
+    EXPECT_EQ(best.at(static_cast<std::size_t>(best_island - 1)), *std::ranges::max_element(best));
     for (const Json& one : signal.at("numbers"))
       if (one.at("of") == "record") {
         EXPECT_EQ(one.at("value"), *std::ranges::max_element(best));

@@ -23,25 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// An individual with a fitness.
-struct Ranked {
-  double score = 0;        ///< first objective, greater is better
-  std::size_t island = 0;  ///< its index
-  std::uint32_t id = 0;
-};
-
-/// Returns the `count` individuals with the best first objective of all islands, the best first.
-std::vector<Ranked> best_of_all(const Islands& islands, std::size_t count) {
-  std::vector<Ranked> best;
-  const double sign = islands.experiments.front().objectives.front().maximise ? 1 : -1;
-  for (std::size_t i = 0; i < islands.archives.size(); ++i)
-    for (const std::uint32_t id : islands.archives[i].best(count))
-      best.push_back({sign * islands.archives[i].known_individual(id).result.objectives.front(), i, id});
-  std::ranges::stable_sort(best, std::greater(), &Ranked::score);
-  best.resize(std::min(best.size(), count));
-  return best;
-}
-
 bool are_finished(const Islands& islands) {
   for (std::size_t i = 0; i < islands.archives.size(); ++i)
     if (!is_finished(islands.experiments[i], islands.archives[i].generations())) return false;
@@ -52,7 +33,7 @@ std::string resume_command_for(const fs::path& folder) { return shell_command({"
 
 void verify_best_of_all(Islands& islands, Simulator& simulator, std::size_t count) {
   std::vector<std::size_t> counts(islands.archives.size());  // of an island, its own best come first among all
-  for (const Ranked& one : best_of_all(islands, count)) ++counts[one.island];
+  for (const IslandIndividual& one : best_of_islands(islands.archives, count)) ++counts[one.island];
   for (std::size_t i = 0; i < counts.size(); ++i) {
     if (counts[i] == 0) continue;
     const Experiment& island = islands.experiments[i];
@@ -64,7 +45,7 @@ void verify_best_of_all(Islands& islands, Simulator& simulator, std::size_t coun
 
 /// Prints the best of all islands. Returns whether there is one.
 bool print_best(const Islands& islands) {
-  const std::vector<Ranked> best = best_of_all(islands, 1);
+  const std::vector<IslandIndividual> best = best_of_islands(islands.archives, 1);
   const std::size_t island = best.empty() ? 0 : best.front().island;
   return print_best(islands.experiments[island], islands.archives[island]);
 }
@@ -77,7 +58,7 @@ std::pair<Archive, Experiment> reopened_island(const fs::path& folder, const Giv
 
 void finish(Islands& islands, Simulator& simulator, const RunOutput& output) {
   verify_best_of_all(islands, simulator,
-                     begin_ending(islands.experiments.front(), output, !best_of_all(islands, 1).empty(),
+                     begin_ending(islands.experiments.front(), output, !best_of_islands(islands.archives, 1).empty(),
                                   resume_command_for(islands.folder)));
   if (!output.page) return;
   std::vector<ShownRun> shown;
@@ -134,9 +115,10 @@ bool are_complete(const Islands& islands) {
   const Experiment& first = islands.experiments.front();
   if (!are_finished(islands)) return false;
   return !is_verifiable(first) ||
-         std::ranges::all_of(best_of_all(islands, static_cast<std::size_t>(first.verify)), [&](const Ranked& one) {
-           return islands.archives[one.island].verification(one.id).has_value();
-         });
+         std::ranges::all_of(best_of_islands(islands.archives, static_cast<std::size_t>(first.verify)),
+                             [&](const IslandIndividual& one) {
+                               return islands.archives[one.island].verification(one.id).has_value();
+                             });
 }
 
 std::unique_ptr<IslandsProgress> progress_of(const Islands& islands, const std::atomic<bool>& stop, bool is_live) {

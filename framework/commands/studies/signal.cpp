@@ -50,20 +50,12 @@ void refuse_changes(const std::string& folder, const Given& given) {
 
 /// Returns the folder of the archive that is measured: of a run with islands, that of the island with the best robot.
 fs::path measured_folder(const fs::path& run) {
-  const std::vector<fs::path> folders = archive_folders(run);
-  fs::path measured = folders.front();
-  if (folders.size() == 1) return measured;
-  std::optional<double> highest;
-  for (const fs::path& folder : folders) {
-    const Archive island = Archive::read(folder);
-    const std::vector<std::uint32_t> best = island.best(1);
-    if (best.empty()) continue;
-    const double sign = island.objectives().front().maximise ? 1 : -1;
-    const double score = sign * island.known_individual(best.front()).result.objectives.front();
-    if (highest && score <= *highest) continue;
-    highest = score;
-    measured = folder;
-  }
+  if (!has_islands(run)) return run;
+  const std::vector<fs::path> folders = island_folders(run);
+  std::vector<Archive> archives;
+  for (const fs::path& folder : folders) archives.push_back(Archive::read(folder));
+  const std::vector<IslandIndividual> best = best_of_islands(archives, 1);
+  const fs::path& measured = folders.at(best.empty() ? 0 : best.front().island);
   if (verbosity() != Verbosity::quiet)
     std::cerr << "measuring " << printable(measured.string()) << ", the island with the best robot" << std::endl;
   return measured;

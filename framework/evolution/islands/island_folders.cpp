@@ -1,5 +1,8 @@
 #include "evolution/islands/island_folders.hpp"
 
+#include <algorithm>
+#include <functional>
+
 #include "base/text.hpp"
 
 namespace evodevo {
@@ -41,6 +44,18 @@ std::vector<fs::path> archive_folders(const fs::path& run) {
   std::vector<fs::path> folders = island_folders(run);
   if (folders.empty()) folders.push_back(run);
   return folders;
+}
+
+std::vector<IslandIndividual> best_of_islands(const std::vector<Archive>& archives, std::size_t count) {
+  std::vector<IslandIndividual> best;
+  for (std::size_t i = 0; i < archives.size(); ++i) {
+    const double sign = archives[i].objectives().front().maximise ? 1 : -1;
+    for (const std::uint32_t id : archives[i].best(count))
+      best.push_back({sign * archives[i].known_individual(id).result.objectives.front(), i, id});
+  }
+  std::ranges::stable_sort(best, std::greater(), &IslandIndividual::score);
+  best.resize(std::min(best.size(), count));
+  return best;
 }
 
 std::vector<std::uint32_t> next_generations(const std::vector<Archive>& archives) {

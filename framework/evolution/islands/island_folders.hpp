@@ -23,6 +23,16 @@ bool is_half_created(const std::filesystem::path& run, std::int64_t count);
 /// Returns the folders in which there are archives: those of the islands of the run in a folder, or else the folder.
 std::vector<std::filesystem::path> archive_folders(const std::filesystem::path& run);
 
+/// An individual of an island that has a fitness.
+struct IslandIndividual {
+  double score = 0;        ///< first objective, negated if less is better
+  std::size_t island = 0;  ///< index of its archive
+  std::uint32_t id = 0;
+};
+
+/// Returns the `count` individuals with the best first objective in the archives of a run's islands, the best first.
+std::vector<IslandIndividual> best_of_islands(const std::vector<Archive>& archives, std::size_t count);
+
 /// Returns the next generation of each archive, which is the number of its complete ones.
 std::vector<std::uint32_t> next_generations(const std::vector<Archive>& archives);
 

@@ -3,14 +3,13 @@
 SUMS = ("spring_evaluations", "diverged", "invalid", "artefact", "lucky", "passive")
 
 
-def as_one(islands):
-    """Returns what `evodevo show --json` tells of a run's islands in the form in which it tells of a run without: in each
+def as_one(shown):
+    """Returns what `evodevo show --json` tells of a run with islands in the form in which it tells of one without: in each
     generation what its islands cost together and the best of them, and for the whole run its best robot, with its island's
     verification and signal. Islands that end earlier have no part in later generations. There is no map of niches."""
-    objective = islands[0]["objectives"][0]
-    better = max if objective["maximise"] else min
-    with_best = [island for island in islands if island["best"] is not None]
-    leading = better(with_best, key=lambda island: island["best"]["objectives"][objective["name"]], default=islands[0])
+    islands = shown["islands"]
+    better = max if islands[0]["objectives"][0]["maximise"] else min
+    leading = islands[(shown["best_island"] or 1) - 1]
     return leading | {
         "generations": [generation(islands, number, better) for number in range(max(map(length, islands)))],
         "map": None,

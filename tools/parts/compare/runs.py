@@ -153,6 +153,11 @@ def refuse_keys(experiments, sweeps, settings):
             raise Failure(f"{option} {key}: no experiment has a table [{table}]; add it to those that should have it")
 
 
+def has_islands(variant, experiment):
+    keys = [key.split(".")[0] for key, _ in (*variant.settings, *variant.swept)]
+    return "islands" in (*experiment, *keys)
+
+
 def births_of(variant, experiment):
     """Returns how many robots are born in each generation of a variant."""
     given = {f"experiment.{key}": value for key, value in experiment.get("experiment", {}).items()}
@@ -175,7 +180,7 @@ def make_variants(files, sweeps, settings, with_random=False):
         fixed = tuple((key, value) for key, value in settings if has_table_of(experiment, key))
         for swept in itertools.product(*values):
             variants.append(variant := Variant(file, swept, fixed))
-            if with_random and "islands" not in {*experiment, *(key.split(".")[0] for key, _ in (*fixed, *swept))}:
+            if with_random and not has_islands(variant, experiment):
                 variants.append(dataclasses.replace(variant, births=births_of(variant, experiment)))
     return variants
 
@@ -332,7 +337,7 @@ class Runs:
 
     def _shown(self, run):
         shown = json.loads(self._evodevo("show", run.folder, "--json"))
-        return as_one(shown["islands"]) if "islands" in shown else shown
+        return as_one(shown) if "islands" in shown else shown
 
     @staticmethod
     def _has_begun(run):
