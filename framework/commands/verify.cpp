@@ -4,9 +4,11 @@
 
 #include "base/json_text.hpp"
 #include "commands/commands.hpp"
-#include "commands/shell/builds.hpp"
 #include "commands/shell/options.hpp"
+#include "commands/shell/output/notices.hpp"
 #include "commands/shell/verification_report.hpp"
+#include "engine/builds.hpp"
+#include "engine/run.hpp"
 #include "report/run_json.hpp"
 
 namespace evodevo {
@@ -30,11 +32,12 @@ int verify(const Given& given) {
                        ", is measured within the life, which verification does not repeat; put an operator that "
                        "measures after maturing first");
   const auto simulator = opened_simulator(experiment);
-  warn_of_other_builds(experiment, *simulator, archive);
+  print_warnings(other_builds(experiment, *simulator, archive));
   const std::optional<std::int64_t> life = given_life_number(given);
   const auto count = static_cast<std::size_t>(best);
   const auto verifications = life ? verify_life_of_best(experiment, *simulator, archive, count, *life)
-                                  : verify_best(experiment, *simulator, archive, count);
+                                  : timed("verifying the best individuals",
+                                          [&] { return verify_best(experiment, *simulator, archive, count); });
   const Objective& objective = experiment.objectives.front();
   if (!given.contains("json")) {
     print(verifications, objective);

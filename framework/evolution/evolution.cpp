@@ -13,6 +13,7 @@
 #include "evolution/breeding.hpp"
 #include "evolution/clones.hpp"
 #include "evolution/founders.hpp"
+#include "evolution/front_lives.hpp"
 #include "evolution/front_verification.hpp"
 #include "evolution/islands/migration.hpp"
 #include "evolution/selection_table.hpp"
@@ -129,62 +130,6 @@ Survival chosen_survivors(const Experiment& experiment, const SelectionTable& ta
   return survival;
 }
 
-/// Returns the Pareto front of `everyone` in the objectives and in youth.
-std::vector<const Individual*> front(const std::vector<Individual>& everyone, const Experiment& experiment,
-                                     std::uint32_t generation) {
-  const std::vector<std::uint32_t> layer = layers(everyone, experiment, generation);
-  std::vector<const Individual*> front;
-  for (std::size_t i = 0; i < everyone.size(); ++i)
-    if (everyone[i].result.status == Status::ok && layer[i] == 0) front.push_back(&everyone[i]);
-  return front;
-}
-
-/// Decides which records of lives the archive keeps: those of all individuals that are ever on the front.
-class FrontLives {
- public:
-  FrontLives(const Experiment& experiment, Evaluator& evaluator, const RecordedProvenances& provenances,
-             const Archive& archive)
-      : experiment_(experiment), evaluator_(evaluator), provenances_(provenances) {
-    for (const Individual& individual : archive.population())
-      kept_[individual.id] = static_cast<std::uint32_t>(archive.lives(individual.id).size());
-  }
-
-  /// Keeps the records of all lives of the individuals on the front. A few older individuals reach the front only now,
-  /// because selection has removed the individuals that dominated them. Their records no longer exist, so they are
-  /// simulated again. Individuals whose provenance the evaluator does not have are not simulated again, because the new
-  /// life might differ from the one that was scored.
-  void keep_front(const std::vector<Individual>& everyone, std::uint32_t generation) {
-    std::vector<Newborn> arrivals;
-    std::vector<std::uint32_t> provenances;
-    for (const Individual* individual : front(everyone, experiment_, generation)) {
-      std::uint32_t& kept = kept_[individual->id];
-      const std::optional<std::uint32_t> provenance = provenances_.own(individual->provenance);
-      if (kept == individual->lives || !provenance) continue;
-      Newborn& arrival = arrivals.emplace_back(newborn_of(*individual));
-      arrival.life += kept;
-      arrival.lives -= std::exchange(kept, individual->lives);
-      provenances.push_back(*provenance);
-    }
-    if (arrivals.empty()) return;
-    std::vector<std::vector<LifeRecord>> records = evaluator_.records(arrivals, provenances);
-    for (std::size_t i = 0; i < arrivals.size(); ++i)
-      to_commit_[arrivals[i].id] = {arrivals[i].life, std::move(records[i])};
-  }
-
-  /// Returns the records that the current generation adds to the archive, and forgets all of its records.
-  LivesById committed() {
-    evaluator_.forget_records();
-    return std::exchange(to_commit_, {});
-  }
-
- private:
-  const Experiment& experiment_;
-  Evaluator& evaluator_;
-  const RecordedProvenances& provenances_;
-  LivesById to_commit_;
-  std::map<std::uint32_t, std::uint32_t> kept_;  ///< number of lives whose records are kept, by id
-};
-
 /// Removes from `everyone` all individuals except the survivors, which stay in the order of birth. Adds the ids of the
 /// removed individuals to `dropped`. Replaces what the operator remembers, and its notes.
 void select(std::vector<Individual>& everyone, const Experiment& experiment, std::uint32_t generation,
@@ -268,6 +213,16 @@ bool is_finished(const Settings& settings, const std::vector<Summary>& generatio
          is_spent(settings.spring_evaluations, spring_evaluations) || is_spent(settings.hours * 3600, seconds);
 }
 
+bool is_verified(const Archive& archive, const Settings& settings) {
+  const auto best = archive.best(static_cast<std::size_t>(settings.verify));
+  return std::ranges::all_of(best, [&](std::uint32_t id) { return archive.verification(id).has_value(); });
+}
+
+bool is_complete(const Archive& archive, const Experiment& experiment) {
+  return is_finished(experiment, archive.generations()) &&
+         (!is_verifiable(experiment) || is_verified(archive, experiment));
+}
+
 namespace {
 
 /// Calls `use(key, time)` for each of the times, with the key of its entry in the run's record.
@@ -306,78 +261,135 @@ TimeSpent evolve(const Experiment& experiment, Simulator& simulator, Archive& ar
   return evolve(experiment, evaluator, archive, stop, observer);
 }
 
-TimeSpent evolve(const Experiment& experiment, Evaluator& evaluator, Archive& archive, const std::atomic<bool>& stop,
-                 const Observer& observer, Migration* migration) {
-  using Clock = std::chrono::steady_clock;
-  const auto seconds_since = [](Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+}  // namespace
+
+struct Evolution::State {
+  /// What the generations of this process need. It is made with the first of them, because it records the provenance of
+  /// this process, which makes nothing new in a run that is finished.
+  struct Work {
+    RecordedProvenances provenances;
+    FrontLives lives;
+    FrontVerification verification;
+    ArchiveWriter writer;
+
+    explicit Work(State& state)
+        : provenances(recorded_provenances(state.evaluator, state.archive)),
+          lives(state.experiment, state.evaluator, provenances, state.archive),
+          verification(state.experiment, state.evaluator, provenances),
+          writer(state.archive) {}
   };
-  const auto begin = Clock::now();
-  TimeSpent time;
+
+  const Experiment& experiment;
+  Evaluator& evaluator;
+  Archive& archive;
+  Migration* migration;
   std::vector<Summary> summaries = archive.generations();
-  if (is_finished(experiment, summaries)) return {};  // no provenance is recorded, as this process makes nothing new
-  auto generation = static_cast<std::uint32_t>(summaries.size());
-  std::int64_t evaluations = summaries.empty() ? 0 : summaries.back().evaluations;
   std::vector<Individual> population = archive.population();
   Remembered remembered{archive.memory(), {}};
-  const RecordedProvenances provenances = recorded_provenances(evaluator, archive);
-  FrontLives lives(experiment, evaluator, provenances, archive);
-  FrontVerification verification(experiment, evaluator, provenances);
-  ArchiveWriter writer(archive);
+  std::unique_ptr<Work> work = nullptr;
+  bool has_ended = false;  ///< whether the other islands know that this one is finished
+  PhaseTimes before = evaluator.phase_times();
+  TimeSpent time = {};
 
-  for (; !is_finished(experiment, summaries) && !stop; ++generation) {
-    const auto migrants = generation == 0 ? founders(experiment)
-                          : migration     ? migration->arrivals(generation, stop)
-                                          : std::vector<Migrant>();
-    if (!migrants) break;
-    const auto start = Clock::now();
-    const std::int64_t count = std::min(experiment.births(generation), experiment.evaluations - evaluations);
-    // each evaluation uses one id, so the next id is the number of evaluations so far
-    std::vector<Individual> newborns = breed(
-        experiment, population, generation, static_cast<std::uint32_t>(evaluations), static_cast<std::size_t>(count),
-        memory_of_breeder(experiment, remembered), &evaluator.workers(), *migrants);
-    time.breed += seconds_since(start);
-    const std::vector<Individual*> elders = due_again(population, experiment, provenances);
-    const std::uint64_t spring_evaluations =
-        evaluate(newborns, elders, population, experiment, evaluator, provenances, observer);
-    evaluations += count;
-    Summary summary = summarise(population, newborns, elders, generation);
-    summary.spring_evaluations = spring_evaluations;
-    std::vector<Individual> measured_again;
-    for (const Individual* elder : elders) measured_again.push_back(*elder);
-    verification.forget(measured_again);
-    population.insert(population.end(), newborns.begin(), newborns.end());
-    const std::vector<Refusal> refusals = verification.refuse(population, generation);
-    add_refusals(refusals, summary);
-    const auto selection = Clock::now();
-    std::vector<std::uint32_t> dropped;
-    if (!needs_all_children(experiment)) dropped = remove_copies(population);
-    lives.keep_front(population, generation);
-    const std::vector<Individual> claimants =
-        migration ? migration->claimants(population, generation) : std::vector<Individual>();
-    select(population, experiment, generation, dropped, remembered);
-    if (!claimants.empty()) migration->replace(claimants, generation, population, dropped);
-    lives.keep_front(population, generation);
-    const auto [best, median] = best_and_median(first_scores(population), experiment.objectives.front().maximise);
-    summary.best = best;
-    summary.median = median;
-    summary.evaluations = evaluations;
-    summary.wall_time = seconds_since(start);
-    time.select += seconds_since(selection);
-    const auto departures = migration ? migration->departures(population, generation) : std::vector<Emigration>();
-    writer.begin({std::move(newborns), std::move(measured_again), std::move(dropped), lives.committed(), summary,
-                  remembered, refusals, departures});
-    if (migration) migration->depart(departures, population, generation);
-    observer.generation_done(summary);
-    summaries.push_back(summary);
+  bool is_finished() const { return evodevo::is_finished(experiment, summaries); }
+  void make_generation(const std::vector<Migrant>& migrants, const Observer& observer);
+};
+
+void Evolution::State::make_generation(const std::vector<Migrant>& migrants, const Observer& observer) {
+  const auto start = Clock::now();
+  const auto generation = static_cast<std::uint32_t>(summaries.size());
+  const std::int64_t evaluations = summaries.empty() ? 0 : summaries.back().evaluations;
+  const std::int64_t count = std::min(experiment.births(generation), experiment.evaluations - evaluations);
+  // each evaluation uses one id, so the next id is the number of evaluations so far
+  std::vector<Individual> newborns =
+      breed(experiment, population, generation, static_cast<std::uint32_t>(evaluations),
+            static_cast<std::size_t>(count), memory_of_breeder(experiment, remembered), &evaluator.workers(), migrants);
+  time.breed += seconds_since(start);
+  const std::vector<Individual*> elders = due_again(population, experiment, work->provenances);
+  const std::uint64_t spring_evaluations =
+      evaluate(newborns, elders, population, experiment, evaluator, work->provenances, observer);
+  Summary summary = summarise(population, newborns, elders, generation);
+  summary.spring_evaluations = spring_evaluations;
+  std::vector<Individual> measured_again;
+  for (const Individual* elder : elders) measured_again.push_back(*elder);
+  work->verification.forget(measured_again);
+  population.insert(population.end(), newborns.begin(), newborns.end());
+  const std::vector<Refusal> refusals = work->verification.refuse(population, generation);
+  add_refusals(refusals, summary);
+  const auto selection = Clock::now();
+  std::vector<std::uint32_t> dropped;
+  if (!needs_all_children(experiment)) dropped = remove_copies(population);
+  work->lives.keep_front(population, generation);
+  const std::vector<Individual> claimants =
+      migration ? migration->claimants(population, generation) : std::vector<Individual>();
+  select(population, experiment, generation, dropped, remembered);
+  if (!claimants.empty()) migration->replace(claimants, generation, population, dropped);
+  work->lives.keep_front(population, generation);
+  const auto [best, median] = best_and_median(first_scores(population), experiment.objectives.front().maximise);
+  summary.best = best;
+  summary.median = median;
+  summary.evaluations = evaluations + count;
+  summary.wall_time = seconds_since(start);
+  time.select += seconds_since(selection);
+  const auto departures = migration ? migration->departures(population, generation) : std::vector<Emigration>();
+  work->writer.begin({std::move(newborns), std::move(measured_again), std::move(dropped), work->lives.committed(),
+                      summary, remembered, refusals, departures});
+  if (migration) migration->depart(departures, population, generation);
+  observer.generation_done(summary);
+  summaries.push_back(summary);
+}
+
+Evolution::Evolution(const Experiment& experiment, Evaluator& evaluator, Archive& archive, Migration* migration)
+    : state_(new State{experiment, evaluator, archive, migration}) {}
+Evolution::Evolution(Evolution&&) noexcept = default;
+Evolution::~Evolution() = default;
+
+bool Evolution::is_finished() const { return state_->is_finished(); }
+
+bool Evolution::advance(const std::atomic<bool>& stop, const Observer& observer) {
+  State& state = *state_;
+  if (state.is_finished()) {
+    if (state.migration && state.work && !std::exchange(state.has_ended, true)) state.migration->end();
+    return false;
   }
-  if (migration && is_finished(experiment, summaries)) migration->end();
-  writer.wait();
-  time.archive = writer.seconds();
-  time.whole = seconds_since(begin);
-  time.evaluation = evaluator.phase_times();
-  time.verify = verification.seconds();
-  return time;
+  if (stop) return false;
+  const auto begin = Clock::now();
+  if (!state.work) state.work = std::make_unique<State::Work>(state);
+  const auto generation = static_cast<std::uint32_t>(state.summaries.size());
+  const auto migrants = generation == 0   ? founders(state.experiment)
+                        : state.migration ? state.migration->arrivals(generation, stop)
+                                          : std::vector<Migrant>();
+  if (migrants) state.make_generation(*migrants, observer);
+  state.time.whole += seconds_since(begin);
+  return migrants.has_value();
+}
+
+TimeSpent Evolution::pause() {
+  State& state = *state_;
+  if (!state.work) return {};
+  const auto begin = Clock::now();
+  state.work->writer.wait();
+  state.time.whole += seconds_since(begin);
+  state.time.archive = state.work->writer.seconds();
+  const PhaseTimes now = state.evaluator.phase_times();
+  state.time.evaluation = {now.decode - state.before.decode, now.simulate - state.before.simulate,
+                           now.develop - state.before.develop};
+  state.time.verify = state.work->verification.seconds();
+  return state.time;
+}
+
+TimeSpent evolve(const Experiment& experiment, Evaluator& evaluator, Archive& archive, const std::atomic<bool>& stop,
+                 const Observer& observer, Migration* migration) {
+  Evolution evolution(experiment, evaluator, archive, migration);
+  while (evolution.advance(stop, observer)) {
+  }
+  return evolution.pause();
 }
 
 }  // namespace evodevo

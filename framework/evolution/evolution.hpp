@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <functional>
+#include <memory>
 
 #include "evolution/archive/archive.hpp"
 #include "evolution/evaluator.hpp"
@@ -11,7 +12,7 @@ namespace evodevo {
 
 class Migration;
 
-/// Functions that evolve() calls to report its progress.
+/// Functions that the generation loop calls to report its progress.
 struct Observer {
   /// Called after each generation, which may still be being written into the archive (ArchiveWriter).
   std::function<void(const Summary&)> generation_done = [](const Summary&) {};
@@ -21,7 +22,7 @@ struct Observer {
 
 /// Wall-clock time that a run has spent, s. Phases overlap, so the sum of the phases may exceed the whole.
 struct TimeSpent {
-  double whole = 0;       ///< time in evolve()
+  double whole = 0;       ///< time in Evolution::advance() and pause()
   double breed = 0;       ///< the parts of it that were spent making genomes,
   double verify = 0;      ///< verifying the front,
   double select = 0;      ///< and ranking and selecting
@@ -41,11 +42,36 @@ BestAndMedian best_and_median(std::vector<double> scores, bool maximise);
 
 /// Returns whether a run with these generations has used up the experiment's evaluations, spring evaluations or hours.
 bool is_finished(const Settings& settings, const std::vector<Summary>& generations);
+/// Returns whether the best of a run, as many as its experiment says, have been verified.
+bool is_verified(const Archive& archive, const Settings& settings);
+/// Returns whether a run has nothing left to do: neither evolution nor verification.
+bool is_complete(const Archive& archive, const Experiment& experiment);
 
-/// Continues the run in the archive until the run is finished. If `stop` is set in the meantime, finishes and commits
-/// the current generation, then returns. A run that was interrupted and continued gives the same results as one that
-/// was not interrupted. With a migration, the experiment is that of one island, and others have to evolve at the same
-/// time; while it waits for their migrants, `stop` ends it at once.
+/// The generation loop of the run in an archive, one generation at a time. A run that was interrupted after any
+/// generation and continued gives the same results as one that was not interrupted. With a migration, the experiment is
+/// that of one island, and others have to evolve at the same time. Everything that the constructor is given must
+/// outlive the object; until pause(), nobody else may use the archive. After a function has thrown, only
+/// pause() may be called.
+class Evolution {
+ public:
+  Evolution(const Experiment& experiment, Evaluator& evaluator, Archive& archive, Migration* migration = nullptr);
+  Evolution(Evolution&&) noexcept;
+  ~Evolution();
+
+  /// Whether the run has used up what the experiment allows.
+  bool is_finished() const;
+  /// Makes the next generation and commits it, or begins to (ArchiveWriter). Returns false, and makes none, if the run
+  /// is finished, or if `stop` is set, also while it waits for migrants; a generation that has begun is completed.
+  bool advance(const std::atomic<bool>& stop, const Observer& observer = {});
+  /// Waits until all generations have been committed, and returns the time that has been spent so far.
+  TimeSpent pause();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Continues the run in the archive until the run is finished or `stop` is set.
 TimeSpent evolve(const Experiment& experiment, Evaluator& evaluator, Archive& archive, const std::atomic<bool>& stop,
                  const Observer& observer, Migration* migration = nullptr);
 /// Does the same in this process alone.

@@ -20,7 +20,7 @@ void check_layout(const Archive& archive, const Experiment& experiment);
 /// Checks that the recorded layout of genomes is that of the experiment's operators, and allows an individual's genes.
 void check_genes(const Archive& archive, const Experiment& experiment, const Individual& individual);
 
-/// Checks that the run can be resumed: reads and checks everything that evolve() will read.
+/// Checks that the run can be resumed: reads and checks everything that the generation loop will read.
 void check_resumable(const Archive& archive, const Experiment& experiment);
 
 /// Checks that an individual has had all lives of which there are records, and that the cycles and operators in these

@@ -144,11 +144,6 @@ Json summary_json(const Summary& summary) {
           {"wall_time", summary.wall_time}};
 }
 
-bool is_verified(const Archive& archive, const Settings& settings) {
-  const auto best = archive.best(static_cast<std::size_t>(settings.verify));
-  return std::all_of(best.begin(), best.end(), [&](std::uint32_t id) { return archive.verification(id).has_value(); });
-}
-
 std::int64_t clones(const std::vector<Summary>& generations) {
   std::int64_t sum = 0;
   for (const Summary& summary : generations) sum += summary.clones;

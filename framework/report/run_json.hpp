@@ -10,9 +10,6 @@ namespace evodevo {
 /// Returns the summary of a generation.
 nlohmann::ordered_json summary_json(const Summary& summary);
 
-/// Returns whether all of the best individuals that the experiment asks to verify have been verified.
-bool is_verified(const Archive& archive, const Settings& settings);
-
 /// Returns the number of clones in all generations.
 std::int64_t clones(const std::vector<Summary>& generations);
 

@@ -58,8 +58,8 @@ class Outcomes(InOwnFolder):
                     seen = [life["distance"] for life in record["lives"]]
                     self.assertEqual(distances[:2], seen)
                 self.assertEqual((arm, seed, "new draws") in lives, arm != "evo")
-        self.assertIn("| Does it matter that the random numbers of development are inherited? |", done.stdout)
-        self.assertNotIn("several lives", done.stdout.split("## Distance")[0])  # an arm of that question is not there
+        self.assertIn("`individual` has 2", done.stdout)  # of the 50 runs that the plan asks for
+        self.assertIn("`random-places` has 0", done.stdout)
         titles = set(re.findall(r"(?m)^## (.*)$", done.stdout))
         for title in ("Evolution goes on on a slope", "Development of a stranger", "Edits that ancestors had"):
             self.assertIn(title, titles)
@@ -88,21 +88,30 @@ def runs(*distances, marked=()):
     }
 
 
+ARMS = ("individual", "stress-one-life", "evo", "random-places", "shuffled-stress")
+
+
 class Answers(unittest.TestCase):
+    LOW, HIGH = [1 + i / 100 for i in range(20)], [2 + i / 100 for i in range(20)]
+
     def answer(self, stress, evo):
-        text = answers.section({"stress": stress, "evo": evo}, {}, "first", "last")
+        arms = {arm: stress for arm in ARMS} | {"stress": stress, "evo": evo}
+        text = answers.section(arms, {}, "first", "last", "repetition")
+        self.assertNotIn(answers.LEARNT[0], text)
         (line,) = [line for line in text.splitlines() if line.startswith("| Do robots that develop")]
         return line.split(" | ")[-1].removesuffix(" |")
 
     def test_a_difference_is_told_with_its_direction(self):
-        low, high = [1 + i / 100 for i in range(12)], [2 + i / 100 for i in range(12)]
-        self.assertEqual(self.answer(runs(*high), runs(*low)), "yes: more")
-        self.assertEqual(self.answer(runs(*low), runs(*high)), "yes: less")
-        self.assertEqual(self.answer(runs(*low[:3]), runs(*high[:3])), "open")
+        self.assertEqual(self.answer(runs(*self.HIGH), runs(*self.LOW)), "yes: more")
+        self.assertEqual(self.answer(runs(*self.LOW), runs(*self.HIGH)), "yes: less")
+        self.assertEqual(self.answer(runs(*self.LOW), runs(*self.LOW)), "open")
 
     def test_a_difference_that_marked_runs_reverse_is_open(self):
-        low, high = [1 + i / 100 for i in range(12)], [2 + i / 100 for i in range(12)]
-        self.assertEqual(self.answer(runs(*high, marked=range(8)), runs(*low)), "open")
+        self.assertEqual(self.answer(runs(*self.HIGH, marked=range(13)), runs(*self.LOW)), "open")
+
+    def test_nothing_is_answered_before_all_runs_are_there(self):
+        arms = {arm: runs(*self.LOW) for arm in (*ARMS, "stress")} | {"evo": runs(*self.LOW[:19])}
+        self.assertIn("`evo` has 19.", answers.section(arms, {}, "first", "last", "repetition"))
 
     def test_shares_of_too_little_are_not_told(self):
         self.assertIsNone(answers.share(0.1, 0.4))
@@ -112,12 +121,15 @@ class Answers(unittest.TestCase):
         self.assertEqual(answers.share(-1.0, 2.0), 0.0)
 
     def test_what_became_inborn_is_told_by_the_sign_of_the_change(self):
-        def said(change):
-            shares = {f"seed-{i}": {"first": 0.3, "last": 0.3 + change(i)} for i in range(20)}
-            return answers.section({}, {"stress": shares}, "first", "last").rsplit(": ", 1)[1].strip()
+        def said(change, marked=()):
+            arms = {arm: runs(*range(50), marked=marked) for arm in (*ARMS, "stress")}
+            shares = {f"seed-{i}": {"first": 0.3, "last": 0.3 + change(i)} for i in range(50)}
+            return answers.section(arms, {"stress": shares}, "first", "last").rsplit(": ", 1)[1].strip()
 
         self.assertEqual(said(lambda i: 0.3 + i / 1000), "yes.")
+        self.assertEqual(said(lambda i: 0.3 + i / 1000, marked=range(40)), "open.")
         self.assertEqual(said(lambda i: -0.2 - i / 1000), "less.")
+        self.assertEqual(said(lambda i: 0 if i < 30 else 0.3 + i / 1000), "yes.")  # although the median is 0
         self.assertEqual(said(lambda i: (-1) ** i * (0.01 + i / 10000)), "no.")
         self.assertEqual(said(lambda i: (-1) ** i * (0.3 + i / 10000)), "open.")
 

@@ -38,11 +38,10 @@ TEST(LostDevice, SaysWhatIsCompleteAndARunThatGoesOnEndsAsIfItHadNotBeen) {
   const testing::Scratch scratch;
   const Experiment experiment = testing::small();
   const auto failure = [&](const std::string& name, std::size_t generations) {
-    Archive archive = Archive::create(scratch / name, experiment, "test");
-    Breaking simulator(experiment, generations);
-    const auto run = [&] { evolve_and_report(experiment, simulator, archive); };
-    const std::string said = testing::refusal<std::runtime_error>(run);
-    EXPECT_EQ(archive.generations().size(), generations);
+    evodevo::Run run(testing::small(), std::make_unique<Breaking>(experiment, generations),
+                     Archive::create(scratch / name, experiment, "test"));
+    const std::string said = testing::refusal<std::runtime_error>([&] { evolve_and_report(run); });
+    EXPECT_EQ(run.archive().generations().size(), generations);
     return said;
   };
   const std::string device = "CUDA: simulating on the GPU failed\n";
@@ -50,11 +49,26 @@ TEST(LostDevice, SaysWhatIsCompleteAndARunThatGoesOnEndsAsIfItHadNotBeen) {
   const auto folder = scratch / "broken";
   EXPECT_THAT(failure("broken", 3), testing::at_place(device, "generation 2", " resume " + folder.string()));
   {
-    testing::AlteredSimulator calm(experiment);
-    Archive archive = Archive::resume(folder);
-    EXPECT_EQ(evolve_and_report(experiment, calm, archive), 0);
+    evodevo::Run run(testing::small(), std::make_unique<testing::AlteredSimulator>(experiment),
+                     Archive::resume(folder));
+    EXPECT_EQ(evolve_and_report(run), 0);
   }
   testing::expect_same_runs(Archive::read(folder), testing::FinishedRun(testing::small()).archive);
+}
+
+TEST(LostDevice, ARunThatIsHeldGoesOnFromTheGenerationBefore) {
+  const testing::Scratch scratch;
+  evodevo::Run run(testing::small(), std::make_unique<Breaking>(testing::small(), 2),
+                   Archive::create(scratch / "run", testing::small(), "test"));
+  const std::atomic<bool> stop = false;
+  EXPECT_TRUE(run.advance(stop));
+  EXPECT_TRUE(run.advance(stop));
+  EXPECT_THROW(run.advance(stop), std::runtime_error);
+  EXPECT_EQ(run.archive().generations().size(), 2u);
+  while (run.advance(stop)) {
+  }
+  run.pause();
+  testing::expect_same_runs(run.archive(), testing::FinishedRun(testing::small()).archive);
 }
 
 /// Bone is so stiff that whole voxels of it diverge at 0.5 ms. Before such a body is flagged, it moves farther than any

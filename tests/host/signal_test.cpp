@@ -359,15 +359,22 @@ TEST(Signal, OfIndividualDrawsBlamesNoMutation) {
 }
 
 TEST(Signal, OfARunIsKeptUntilItsPopulationChanges) {
-  const testing::FinishedRun run(planted({"experiment.evaluations=40"}));
-  Archive archive = Archive::annotate(run.archive.folder());
+  const testing::Scratch scratch;
+  const auto folder = scratch / "run";
+  {
+    const Experiment experiment = planted({"experiment.evaluations=40"});
+    const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, 2);
+    Archive begun = Archive::create(folder, experiment, simulator->device());
+    evolve(experiment, *simulator, begun, false, Observer{});
+  }
+  Archive archive = Archive::annotate(folder);
   const std::vector<SignalNumber> numbers = {{"random", "repeatability", "one life", "rank", 0.5, 0.25, 0.75, 60},
                                              {"last", "equal bodies", "all children", "share", 0, {}, {}, 240}};
   const std::uint32_t last = archive.generations().back().generation;
   EXPECT_TRUE(archive.set_signal({{"older", "", "", "", 1, {}, {}, 1}, {"older", "", "", "", 2, {}, {}, 1}}, last));
   EXPECT_TRUE(archive.set_signal(numbers, last));
   EXPECT_FALSE(archive.set_signal({}, last - 1)) << "numbers of a population that lives no longer";
-  const auto read = [&] { return Archive::read(run.archive.folder()).signal(); };
+  const auto read = [&] { return Archive::read(folder).signal(); };
   ASSERT_EQ(read().size(), 2u);
   EXPECT_EQ(read()[0].population, "random");
   EXPECT_EQ(read()[0].high, 0.75);
@@ -375,7 +382,7 @@ TEST(Signal, OfARunIsKeptUntilItsPopulationChanges) {
   EXPECT_EQ(read()[1].low, std::nullopt);
   EXPECT_EQ(read()[1].count, 240);
   {
-    Archive resumed = Archive::resume(run.archive.folder());
+    Archive resumed = Archive::resume(folder);
     FinishedGeneration next;
     next.summary = resumed.generations().back();
     ++next.summary.generation;

@@ -12,6 +12,7 @@ QUESTIONS = (
     ("Does it matter that each spring has its own stress?", "stress", "shuffled-stress"),
 )
 LEARNT = ("Does what is learnt in life become inborn?", "stress")
+RUNS = {"study": 50, "repetition": 20}  # of each arm, that the plan asks for
 SMALL = 0.1  # a change of the share that is left without development, within which nothing has become inborn
 WHOLE = 0.5  # body lengths: of less, no share is told
 
@@ -30,39 +31,63 @@ def held_and_all(runs):
     return held, held + [-1.0] * (len(runs) - len(held))
 
 
-def change(shares, first, last):
-    """Returns the changes of a share in the runs in which both are known."""
-    return [run[last] - run[first] for run in shares.values() if None not in (run.get(first), run.get(last))]
+def changes_of(shares, runs, first, last):
+    """Returns the changes of a share in the runs whose best robot is not marked and in which both are known, and those in
+    all runs, in which nothing is inborn in a marked robot."""
+    held, every = [], []
+    for name, run in shares.items():
+        is_marked = bool(runs[name]["marked, %"])
+        if run.get(first) is None or (run.get(last) is None and not is_marked):
+            continue
+        every.append((0.0 if is_marked else run[last]) - run[first])
+        if not is_marked:
+            held.append(every[-1])
+    return held, every
 
 
 def signed_rank_test(changes):
-    """Returns the two-sided p of Wilcoxon's signed-rank test."""
-    return float(stats.wilcoxon(changes).pvalue) if any(changes) else 1.0
+    """Returns the two-sided p of Wilcoxon's signed-rank test, and the sum of the ranks with their signs."""
+    if not any(changes):
+        return 1.0, 0.0
+    other = [change for change in changes if change]
+    ranks = stats.rankdata([abs(change) for change in other])
+    signed = sum(rank if change > 0 else -rank for rank, change in zip(ranks, other))
+    return float(stats.wilcoxon(changes).pvalue), float(signed)
 
 
-def inborn(changes, holm):
-    low, high = inference.median_interval(changes) or (-1.0, 1.0)
-    if holm < inference.SIGNIFICANT:
-        return "yes" if inference.median(changes) > 0 else "less"
-    return "no" if -SMALL <= low and high <= SMALL else "open"
+def inborn(held, holms, signs):
+    """Returns the answer to the question on learning. `holms` and `signs`: of the runs that held, and of all."""
+    low, high = inference.median_interval(held) or (-1.0, 1.0)
+    significant = [holm < inference.SIGNIFICANT for holm in holms]
+    if all(significant) and (signs[0] > 0) == (signs[1] > 0):
+        return "yes" if signs[0] > 0 else "less"
+    return "no" if not any(significant) and -SMALL <= low and high <= SMALL else "open"
 
 
-def section(distances, shares, first, last):
-    """Returns the section on those questions whose arms are there, or an empty text if there are none. `distances` and
-    `shares`: of each arm and run; `first` and `last`: the columns of `shares` that are compared."""
-    asked = [question for question in QUESTIONS if set(question[1:]) <= distances.keys()]
-    changes = change(shares.get(LEARNT[1], {}), first, last)
-    if not asked and not changes:
-        return ""
+def missing(distances, runs):
+    """Returns what is not there yet of the arms of the questions, each as a text."""
+    arms = sorted({arm for question in QUESTIONS for arm in question[1:]})
+    return [f"`{arm}` has {len(distances.get(arm, ()))}" for arm in arms if len(distances.get(arm, ())) < runs]
+
+
+def section(distances, shares, first, last, kind="study"):
+    """Returns the section with the answers, once all runs have been measured. `distances` and `shares`: of each arm and
+    run; `first` and `last`: the columns of `shares` that are compared. A repetition asks nothing about learning."""
+    if lacking := missing(distances, RUNS[kind]):
+        return f"## Answers\n\nNone yet: of the {RUNS[kind]} runs of each arm, {', '.join(lacking)}.\n"
     held, every = [], []
-    for _, a, b in asked:
+    for _, a, b in QUESTIONS:
         samples = held_and_all(distances[a]), held_and_all(distances[b])
         held.append(questions.Test(*(sample[0] for sample in samples)))
         every.append(questions.Test(*(sample[1] for sample in samples)))
-    p = [signed_rank_test(changes)] if changes else []
-    holm_held, holm_all = (inference.holm([*(test.p for test in some), *p]) for some in (held, every))
+    ps = [[test.p for test in some] for some in (held, every)]
+    if kind == "study":
+        changes = changes_of(shares[LEARNT[1]], distances[LEARNT[1]], first, last)
+        tested = [signed_rank_test(some) for some in changes]
+        ps = [[*some, p] for some, (p, _) in zip(ps, tested)]
+    holm_held, holm_all = map(inference.holm, ps)
     lines = []
-    for i, (text, a, b) in enumerate(asked):
+    for i, (text, a, b) in enumerate(QUESTIONS):
         answer = questions.answer(held[i], holm_held[i], holm_all[i], every[i].a12)
         lines.append(
             [
@@ -78,11 +103,12 @@ def section(distances, shares, first, last):
             ]
         )
     header = ["", "arms", "held", "medians", "A12", INTERVAL, "p (Holm), held", "p (Holm), all", "answer"]
-    text = f"## Answers\n\n{table(header, lines)}" if lines else "## Answers\n\n"
-    if changes:
+    text = f"## Answers\n\n{table(header, lines)}"
+    if kind == "study":
+        answer = inborn(changes[0], (holm_held[-1], holm_all[-1]), [sign for _, sign in tested])
         text += (
-            f"\n{LEARNT[0]} In {len(changes)} runs of `{LEARNT[1]}`, the share of the distance that is left without "
-            f"development changed from {first} to {last} by {median_with_interval(changes)} (median, {INTERVAL}), "
-            f"p (Holm) {holm_held[-1]:.2g}: {inborn(changes, holm_held[-1])}.\n"
+            f"\n{LEARNT[0]} In {len(changes[0])} runs of `{LEARNT[1]}` that held, the share of the distance that is left "
+            f"without development changed from {first} to {last} by {median_with_interval(changes[0])} (median, "
+            f"{INTERVAL}); p (Holm) {holm_held[-1]:.2g}, and {holm_all[-1]:.2g} in all runs: {answer}.\n"
         )
     return text

@@ -8,6 +8,7 @@ import statistics
 import subprocess
 import tempfile
 
+import answers
 import kept
 import numpy
 
@@ -59,11 +60,16 @@ def edited(body, edits):
     return {**body, "materials": materials, "springs": list(springs.values())}
 
 
+def length(body):
+    """Returns the longest side of a body, m."""
+    return max(max(axis) - min(axis) for axis in zip(*(mass["position"] for mass in body["masses"])))
+
+
 def moved(body, seed):
     """Returns a body whose masses are moved by small random offsets."""
     source = random.Random(seed)
     places = [mass["position"] for mass in body["masses"]]
-    longest = max(max(axis) - min(axis) for axis in zip(*places))
+    longest = length(body)
     shift = [[axis + longest * NOISE * source.uniform(-1, 1) for axis in place] for place in places]
     return {**body, "masses": [{**mass, "position": place} for mass, place in zip(body["masses"], shift)]}
 
@@ -106,8 +112,8 @@ def with_edits_of_a_stranger(program, start_of, arm, run):
     if not own or not others:
         return None
     body = newborn(program, starts[0], numbers[0])
-    whole, rest = (mean_distance(program, arm, edited(body, edits)) for edits in (own, others))
-    share = rest / whole if whole > 0 else None
+    whole, rest = (mean_distance(program, arm, edited(body, edits)) / length(body) for edits in (own, others))
+    share = answers.share(rest, whole, to=None)
     return {"share left": share, "needed, %": None if share is None else 100 * (share < ENOUGH)}
 
 
@@ -120,8 +126,7 @@ def edits_of_ancestors(program, start_of, arm, run):
     if not arm.develops or not start.exists() or (number := best_of(start)) is None:
         return None
     with kept.open_archive(start) as archive:
-        parents = dict(archive.execute("SELECT id, parent FROM individuals"))
-    line = list(itertools.takewhile(lambda each: each in parents, ancestors(parents, number)))
+        line = kept.line_of(archive, number)[1:]
     edits = told_edits(program, start, number)
     if not edits or not line:
         return None
@@ -134,11 +139,6 @@ def edits_of_ancestors(program, start_of, arm, run):
     told = {f"{way}, {whose}": both[i] for whose, both in of_whom.items() for i, way in enumerate(ways)}
     first = of_line[-1]
     return {**told, "its first ancestor's edits, inborn": had(first, springs[0]) if first else None, "ancestors": len(line)}
-
-
-def ancestors(parents, number):
-    while (number := parents.get(number)) is not None:
-        yield number
 
 
 def newborn_springs(program, start, number):

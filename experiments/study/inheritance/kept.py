@@ -42,9 +42,19 @@ def at_parts(last, parts):
     return [part * last // parts for part in range(parts)]
 
 
-def keep(run, folder, shown):
+def line_of(archive, number):
+    """Returns the ids of an individual and of its ancestors, the first parents of each."""
+    parents = dict(archive.execute("SELECT id, parent FROM individuals"))
+    line = []
+    while number in parents:
+        line.append(number)
+        number = parents[number]
+    return line
+
+
+def keep(run, folder):
     """Writes the last population of a run, the line of its best robot and the best of earlier generations to an archive
-    in a folder, unless it is there or the run is gone. `shown`: the row of the run."""
+    in a folder, unless it is there or the run is gone."""
     if (folder / "run.sqlite").exists() or not run.exists():
         return
     unfinished = folder.with_name(f"{folder.name}.new")
@@ -54,8 +64,7 @@ def keep(run, folder, shown):
         last = last_generation(archive)
         ids = {number for (number,) in archive.execute("SELECT id FROM individuals WHERE died IS NULL")}
         ids |= {number for part in at_parts(last, PARTS) if (number := best_at(archive, part)) is not None}
-        if best := shown["best"]:
-            ids |= {best["individual"], *best["ancestry"]}
+        ids |= set(line_of(archive, best_at(archive, last)))
         reduce(archive, ids)
     unfinished.rename(folder)
 

@@ -20,6 +20,8 @@ import itertools
 import json
 import os
 import pathlib
+import statistics
+import subprocess
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -31,7 +33,7 @@ import kept  # noqa: E402
 from common.command_line import positive  # noqa: E402
 from compare import rows  # noqa: E402
 from compare.continued import Arm, Continuation, Program  # noqa: E402
-from compare.standings import median_with_interval, table  # noqa: E402
+from compare.standings import median_with_interval, number, table  # noqa: E402
 
 LIVES = 12  # of a robot that is born again
 SEEN = 3  # the first of them, which selection may have seen
@@ -45,6 +47,7 @@ SCENES = {
     "damage": "scenario.0.damage=0.1",  # share of the springs that are lost around a random place
 }
 MOVED = ("evaluations=200", "spring_evaluations=0", "verify=0")  # of evolution in another scene
+MARKS = {"artefact", "passive"}
 RUNS_MOVED, RUNS_OF_SIGNAL, RUNS_COMPARED = 20, 10, 20  # of each arm: the first ones
 ROBOTS = 40  # that `signal` measures
 
@@ -122,12 +125,14 @@ class Moved:
 
 
 def stored(row, measure):
-    """Returns what is in a row, after measuring it if there is none; None if it could not be measured."""
+    """Returns what is in a row, after measuring it if there is none; None if there is nothing to measure, or if it failed,
+    of which the program has said why."""
     if not row.exists():
-        measured = measure()
-        if measured is None:
+        try:
+            rows.store(row, measure())
+        except subprocess.CalledProcessError as error:
+            print(f"left out: {row}: {error}", file=sys.stderr)
             return None
-        rows.store(row, measured)
     return json.loads(row.read_text())
 
 
@@ -150,11 +155,13 @@ def told_of_signal(numbers):
 
 
 def report(title, of_arms):
-    """Returns a table of medians over the runs. `of_arms`: for each arm and each run what was measured of it."""
+    """Returns a table of medians over the runs, or of means where a column is in percent. `of_arms`: for each arm and each run what was measured of it."""
     columns = list(dict.fromkeys(column for runs in of_arms.values() for run in runs.values() for column in run))
 
     def cell(runs, column):
         numbers = [run[column] for run in runs.values() if run.get(column) is not None]
+        if column.endswith(", %"):  # of which a run has all or nothing
+            return number(statistics.fmean(numbers)) if numbers else "-"
         return median_with_interval(numbers) if numbers else "-"
 
     lines = [[f"`{arm}`", str(len(runs)), *(cell(runs, column) for column in columns)] for arm, runs in of_arms.items()]
@@ -187,7 +194,10 @@ class Study:
 
     def keep(self):
         with concurrent.futures.ThreadPoolExecutor(self.program.jobs) as pool:
-            list(pool.map(lambda each: kept.keep(each[1], self.start(*each), rows.read(each[0].row(each[1]))), self.of_all))
+            list(pool.map(lambda each: kept.keep(each[1], self.start(*each)), self.of_all))
+        for arm, run in self.of_all:
+            if not self.start(arm, run).exists():
+                print(f"left out: {arm.name}, {run.name}: neither its run nor what was kept of it is there", file=sys.stderr)
 
     def lives(self):
         lives = {(arm.name, run.name): Lives(self.out, arm, run, self.start(arm, run)) for arm, run in self.of_all}
@@ -234,8 +244,11 @@ def told_of_lives(study, lives):
         if (same := ways.score("same draws")) is None:
             continue
         best = shown["best"]
+        if best and not best["verification"]:
+            sys.exit(f"{arm}, {run}: its best robot has not been verified; let `evodevo verify` do it, and read its row again")
         record = best["objectives"][shown["objectives"][0]["name"]] if best else 0.0
         new, without = ways.score("new draws"), ways.score("without development")
+        left = answers.share(without, same)
         distances[arm, run] = {
             "record": record,
             "same draws": same,
@@ -244,7 +257,8 @@ def told_of_lives(study, lives):
             "share of the record": answers.share(same, record, to=None),
             "evaluations": shown["generations"][-1]["evaluations"],
             "generations": len(shown["generations"]),
-            "marked, %": 100 * bool(best and best["verification"]["marks"]) if best and best["verification"] else 0,
+            "development needed, %": None if left is None else 100 * (left < bodies.ENOUGH),
+            "marked, %": 100 * bool(best and MARKS.intersection(best["verification"]["marks"])),
         }
         if without is not None:
             shares[arm, run] = {f"after {quarter} of {QUARTERS}": ways.share_without(quarter) for quarter in range(QUARTERS + 1)}
@@ -256,6 +270,7 @@ def main():
     parser.add_argument("folder", type=pathlib.Path, help="of the comparison, that is, --out of tools/compare")
     parser.add_argument("--jobs", metavar="N", type=positive, default=1, help="measurements at once (1)")
     parser.add_argument("--only", choices=["lives"], help="measure nothing else")
+    parser.add_argument("--repetition", action="store_true", help="answer the questions of a repetition")
     given = parser.parse_args()
     program = Program(os.environ.get("EVODEVO_PROGRAM", "evodevo"), given.jobs)
     study = Study(given.folder, program)
@@ -285,9 +300,9 @@ def main():
             known[title] = study.each(kind, count, functools.partial(measure, program, study.start))
     study.out.mkdir(exist_ok=True)
     write_csv(known, study.out / "outcomes.csv")
-    parts = [answers.section(distances, shares, f"after 0 of {QUARTERS}", f"after {QUARTERS} of {QUARTERS}")]
-    parts += itertools.starmap(report, known.items())
-    text = "\n".join(part for part in parts if part)
+    kind = "repetition" if given.repetition else "study"
+    answered = answers.section(distances, shares, f"after 0 of {QUARTERS}", f"after {QUARTERS} of {QUARTERS}", kind)
+    text = "\n".join([answered, *itertools.starmap(report, known.items())])
     (study.out / "report.md").write_text(text)
     print(text)
 

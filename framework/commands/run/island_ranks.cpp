@@ -8,6 +8,7 @@
 #include "base/input_error.hpp"
 #include "cluster/post.hpp"
 #include "cluster/ranks.hpp"
+#include "commands/run/run_options.hpp"
 #include "commands/shell/options.hpp"
 #include "evolution/islands/island_folders.hpp"
 #include "evolution/islands/island_runs.hpp"
@@ -58,7 +59,7 @@ void lead(Channel& channel, const message::Lead& lead, const Groups& groups, con
   const bool mixed = given.contains("mixed");
   try {
     for (const std::int64_t island : groups.islands(groups.of_rank(channel.rank()))) {
-      auto [archive, experiment] = reopened(island_folder(lead.folder, island), given);
+      auto [archive, experiment] = reopened(given_spec(given, island_folder(lead.folder, island)), printed_events());
       archives.push_back(std::move(archive));
       experiments.push_back(std::move(experiment));
     }

@@ -10,10 +10,11 @@
 #include "commands/run/page.hpp"
 #include "commands/run/progress.hpp"
 #include "commands/run/run_options.hpp"
-#include "commands/shell/builds.hpp"
 #include "commands/shell/output/notices.hpp"
 #include "commands/shell/output/output_of_thread.hpp"
 #include "commands/shell/verification_report.hpp"
+#include "engine/builds.hpp"
+#include "engine/run.hpp"
 #include "evolution/islands/island_folders.hpp"
 #include "evolution/islands/island_runs.hpp"
 #include "experiment/device.hpp"
@@ -37,7 +38,8 @@ void verify_best_of_all(Islands& islands, Simulator& simulator, std::size_t coun
   for (std::size_t i = 0; i < counts.size(); ++i) {
     if (counts[i] == 0) continue;
     const Experiment& island = islands.experiments[i];
-    const std::vector<Verification> verifications = verify_best(island, simulator, islands.archives[i], counts[i]);
+    const auto verifications = timed("verifying the best individuals of an island",
+                                     [&] { return verify_best(island, simulator, islands.archives[i], counts[i]); });
     std::cout << "island " << island.island << ":\n";
     print(verifications, island.objectives.front());
   }
@@ -51,8 +53,9 @@ bool print_best(const Islands& islands) {
 }
 
 std::pair<Archive, Experiment> reopened_island(const fs::path& folder, const Given& given, const Experiment* expected) {
-  auto island = reopened(folder, given, expected);
-  if (!given.contains("allow-other-versions")) refuse_other_versions(island.second, island.first);
+  const RunSpec spec = given_spec(given, folder);
+  auto island = reopened(spec, printed_events(), expected);
+  if (!spec.other_versions) refuse_other_versions(island.second, island.first);
   return island;
 }
 

@@ -15,15 +15,11 @@
 #include "commands/run/page.hpp"
 #include "commands/run/progress.hpp"
 #include "commands/run/run_options.hpp"
-#include "commands/shell/builds.hpp"
 #include "commands/shell/options.hpp"
 #include "commands/shell/output/notices.hpp"
 #include "commands/shell/verification_report.hpp"
-#include "evolution/evolution.hpp"
-#include "evolution/first_robots.hpp"
-#include "evolution/founders.hpp"
+#include "engine/builds.hpp"
 #include "evolution/islands/island_folders.hpp"
-#include "evolution/record_check.hpp"
 #include "experiment/device.hpp"
 #include "operators/call_watch.hpp"
 #include "operators/plugin_folders.hpp"
@@ -34,17 +30,6 @@ namespace evodevo {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Creates and returns the folder runs/NAME-N, where N is the first number from 1 for which there is no folder yet.
-fs::path new_run_folder(const std::string& name) {
-  std::error_code error;
-  fs::create_directories("runs", error);
-  for (int number = 1; !error; ++number) {
-    fs::path folder = fs::path("runs") / (name + "-" + std::to_string(number));
-    if (fs::create_directory(folder, error)) return folder;
-  }
-  throw ArchiveError("runs: no folder can be created in it: " + error.message() + "; give another place with --out");
-}
 
 std::string resume_command_for(const Archive& archive) { return shell_command({"resume", archive.folder().string()}); }
 
@@ -94,15 +79,23 @@ bool served(const Ranks& ranks, const Given& given) {
   return true;
 }
 
-/// Returns the farm of all ranks; nothing if there is only this process. `is_record` is that of ExperimentSource.
-std::unique_ptr<Farm> farm_of(const Ranks& ranks, const Experiment& experiment, Simulator& simulator, bool is_record,
-                              const Given& given) {
-  if (!ranks.channel()) return nullptr;
-  const message::Setup setup{
-      .text = experiment.resolved, .name = experiment.name, .files = experiment.files, .is_record = is_record};
-  const FarmOptions options{.mixed = given.contains("mixed")};
-  return timed("waiting for the other ranks",
-               [&] { return std::make_unique<Farm>(experiment, simulator, *ranks.channel(), setup, options); });
+/// Returns what the options say of the run in a folder, with the ranks that work for it, if there are others; the farm
+/// that they make is then put into `farm`. `is_record` is that of ExperimentSource. The arguments must outlive it.
+RunSpec spec_of(const Given& given, const fs::path& folder, const Ranks& ranks, bool is_record, Farm*& farm) {
+  RunSpec spec = given_spec(given, folder);
+  if (!ranks.channel()) return spec;
+  const bool mixed = given.contains("mixed");
+  spec.share = [&ranks, mixed](Experiment& experiment) { share_host(experiment, *ranks.channel(), mixed); };
+  spec.evaluator = [&ranks, &farm, is_record, mixed](const Experiment& experiment, Simulator& simulator) {
+    const message::Setup setup{
+        .text = experiment.resolved, .name = experiment.name, .files = experiment.files, .is_record = is_record};
+    auto made = timed("waiting for the other ranks", [&] {
+      return std::make_unique<Farm>(experiment, simulator, *ranks.channel(), setup, FarmOptions{.mixed = mixed});
+    });
+    farm = made.get();
+    return made;
+  };
+  return spec;
 }
 
 /// Returns the file of an experiment and the files that its parameters name.
@@ -117,17 +110,6 @@ RunOutput output_of(const Given& given, GenerationLog* log, TimeLimit* limit) {
 }
 
 }  // namespace
-
-std::pair<Archive, Experiment> reopened(const fs::path& folder, const Given& given, const Experiment* expected) {
-  Archive archive = Archive::resume(folder, given_journal(given));
-  Experiment experiment = timed("reading the record of the run and loading its operators", [&] {
-    return recorded_experiment(archive, given_plugin_path(given), given_machine(given));
-  });
-  if (expected) check_same_experiment(archive, experiment, *expected);
-  experiment.gpus = given_gpus(given);
-  timed("checking that the run can be continued", [&] { check_resumable(archive, experiment); });
-  return {std::move(archive), std::move(experiment)};
-}
 
 std::size_t begin_ending(const Experiment& experiment, const RunOutput& output, bool has_best,
                          const std::string& later) {
@@ -154,24 +136,26 @@ void RunOutput::generation_done(const Summary& summary, std::int64_t island) con
 namespace {
 
 /// Verifies the best of a run, and shows them on a page, as far as the user asks for it.
-void verify_and_show(const Experiment& experiment, Simulator& simulator, Archive& archive, const RunOutput& output) {
-  const bool has_best = !archive.best(1).empty();
-  const std::size_t count =
-      begin_ending(experiment, output, has_best, shell_command({"verify", archive.folder().string()}));
-  print(verify_best(experiment, simulator, archive, count), experiment.objectives.front());
+void verify_and_show(Run& run, const RunOutput& output) {
+  const Archive& archive = run.archive();
+  const std::size_t count = begin_ending(run.experiment(), output, !archive.best(1).empty(),
+                                         shell_command({"verify", archive.folder().string()}));
+  print(timed("verifying the best individuals", [&] { return run.verify(count); }),
+        run.experiment().objectives.front());
   if (!output.page) return;
-  const ShownRun shown{experiment, archive};
-  show_runs(archive.folder(), {&shown, 1}, simulator);
+  const ShownRun shown{run.experiment(), archive};
+  show_runs(archive.folder(), {&shown, 1}, run.simulator());
 }
 
 }  // namespace
 
-int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archive& archive, Farm* farm,
-                      const RunOutput& output) {
+int evolve_and_report(Run& run, Farm* farm, const RunOutput& output) {
+  const Experiment& experiment = run.experiment();
+  const Archive& archive = run.archive();
   stop_on_signals();
   end_long_calls_after(stop_requested());
-  remarks() << experiment.name << " on " << simulator.device() << ", " << places_text(simulator, farm) << "; writing "
-            << archive.folder().string() << std::endl;
+  remarks() << experiment.name << " on " << run.simulator().device() << ", " << places_text(run.simulator(), farm)
+            << "; writing " << archive.folder().string() << std::endl;
   ProgressDisplay progress(experiment, archive.generations(), stop_requested(), farm);
   Observer observer = progress.observer();
   observer.generation_done = [&output, display = observer.generation_done](const Summary& summary) {
@@ -180,23 +164,23 @@ int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archiv
   };
   TimeSpent time;
   try {
-    time = farm ? evolve(experiment, *farm, archive, stop_requested(), observer)
-                : evolve(experiment, simulator, archive, stop_requested(), observer);
+    while (run.advance(stop_requested(), observer)) {
+    }
+    time = run.pause();
   } catch (const std::exception& error) {
     progress.finish();
     throw std::runtime_error(error.what() + remedy_for(error) + state_of(archive));
   }
   progress.finish();
-  record_time_spent(archive, time);
   const bool has_best = print_best(experiment, archive);
   print_speed(static_cast<double>(progress.spring_evaluations()), progress.seconds(), time.verify);
-  print_time_spent(time, simulator);
+  print_time_spent(time, run.simulator());
   if (farm) {
     print_shares(farm->shares(), time.whole);
     farm->finish();
   }
-  const bool finished = is_finished(experiment, archive.generations());
-  if (finished || output.ends_by_clock()) verify_and_show(experiment, simulator, archive, output);
+  const bool finished = run.is_finished();
+  if (finished || output.ends_by_clock()) verify_and_show(run, output);
   if (finished) return has_best ? 0 : no_fitness;
   std::cout << "ended early; to continue: " << resume_command_for(archive) << std::endl;
   return ended_early;
@@ -217,27 +201,32 @@ int evolve_and_report(Islands islands, Simulator& simulator, const Ranks& ranks,
                          : evolve_and_report(islands, simulator, stop, output);
 }
 
+int begin_islands(const Ranks& ranks, std::vector<Experiment> islands, const RunSpec& spec, const Given& given,
+                  const RunOutput& output) {
+  Experiment& first = islands.front();
+  const auto simulator = opened_to_begin(first, spec, printed_events());
+  remember_folders_of(first);
+  const fs::path folder = spec.folder.empty() ? new_run_folder(first.name) : spec.folder;
+  return evolve_and_report(created_islands(folder, std::move(islands), simulator->device(), given), *simulator, ranks,
+                           given, output);
+}
+
 /// Does what `evodevo run` does if the folder of the run holds no run yet. `islands` has the experiments of all
 /// islands, or the only one of the run.
 int begin(const Ranks& ranks, const std::string& file, std::vector<Experiment> islands, const Given& given,
           TimeLimit* limit) {
-  Experiment& experiment = islands.front();
-  given_journal(given);  // so that a wrong one is reported before anything is written
-  const std::unique_ptr<GenerationLog> log = given_log(given, experiment, files_of_experiment(file, experiment));
-  founders(experiment);  // so that a wrong start is reported before anything is written
-  print_warnings(experiment.warnings);
-  print_warnings(first_robots(experiment).warnings);
-  if (ranks.channel()) share_host(experiment, *ranks.channel(), given.contains("mixed"));
-  const auto simulator = opened_simulator(experiment);
-  remember_folders_of(experiment);
-  const auto farm = islands.size() == 1 ? farm_of(ranks, experiment, *simulator, false, given) : nullptr;
-  const fs::path folder =
-      given.contains("out") ? fs::path(given["out"].as<std::string>()) : new_run_folder(experiment.name);
-  if (islands.size() > 1)
-    return evolve_and_report(created_islands(folder, std::move(islands), simulator->device(), given), *simulator, ranks,
-                             given, output_of(given, log.get(), limit));
-  Archive archive = Archive::create(folder, experiment, simulator->device(), given_journal(given));
-  return evolve_and_report(experiment, *simulator, archive, farm.get(), output_of(given, log.get(), limit));
+  Farm* farm = nullptr;
+  const fs::path folder = given.contains("out") ? given["out"].as<std::string>() : "";
+  if (given.contains("out") && folder.empty())
+    throw UsageError("--out: is empty; give a folder, or leave the option out");
+  const RunSpec spec = spec_of(given, folder, ranks, false, farm);
+  Experiment& first = islands.front();
+  const std::unique_ptr<GenerationLog> log = given_log(given, first, files_of_experiment(file, first));
+  const RunOutput output = output_of(given, log.get(), limit);
+  if (islands.size() > 1) return begin_islands(ranks, std::move(islands), spec, given, output);
+  Run run = Run::begin(std::move(first), spec, printed_events());
+  remember_folders_of(run.experiment());
+  return evolve_and_report(run, farm, output);
 }
 
 /// Says that a run with islands is complete, so that there is nothing to do, and returns the exit code.
@@ -262,12 +251,6 @@ int say_complete(const Archive& archive) {
   return archive.best(1).empty() ? no_fitness : 0;
 }
 
-/// Whether the run has nothing left to do: neither evolution nor verification.
-bool is_complete(const Archive& archive, const Experiment& experiment) {
-  return is_finished(experiment, archive.generations()) &&
-         (!is_verifiable(experiment) || is_verified(archive, experiment));
-}
-
 /// Returns the files of all islands of a run.
 std::vector<fs::path> files_of_islands(const fs::path& folder) {
   std::vector<fs::path> files;
@@ -284,8 +267,8 @@ int go_on_with_islands(const Ranks& ranks, const fs::path& folder, const Given& 
   if (are_complete(islands)) return say_complete(islands);
   if (ranks.channel()) share_host(first, *ranks.channel(), given.contains("mixed"));
   const auto simulator = opened_simulator(first);
-  warn_of_another_device(*simulator, islands.archives.front());
-  warn_of_other_builds(first, *simulator, islands.archives.front());
+  print_warnings(another_device(*simulator, islands.archives.front()));
+  print_warnings(other_builds(first, *simulator, islands.archives.front()));
   const std::unique_ptr<GenerationLog> log = given_log(given, first, files_of_islands(folder));
   return evolve_and_report(std::move(islands), *simulator, ranks, given, output_of(given, log.get(), limit));
 }
@@ -295,18 +278,12 @@ int go_on_with_islands(const Ranks& ranks, const fs::path& folder, const Given& 
 int go_on(const Ranks& ranks, const fs::path& folder, const Given& given, TimeLimit* limit,
           const std::vector<Experiment>* expected = nullptr) {
   if (has_islands(folder)) return go_on_with_islands(ranks, folder, given, limit, expected);
-  auto [archive, experiment] = reopened(folder, given, expected ? &expected->front() : nullptr);
-  if (archive.island() > 0)
-    throw ArchiveError(folder.string() + ": is an island, which cannot be continued alone; give the folder of its run");
-  if (is_complete(archive, experiment)) return say_complete(archive);
-  if (!given.contains("allow-other-versions")) refuse_other_versions(experiment, archive);
-  if (ranks.channel()) share_host(experiment, *ranks.channel(), given.contains("mixed"));
-  const auto simulator = opened_simulator(experiment);
-  warn_of_another_device(*simulator, archive);
-  warn_of_other_builds(experiment, *simulator, archive);
-  const auto farm = farm_of(ranks, experiment, *simulator, true, given);
-  const std::unique_ptr<GenerationLog> log = given_log(given, experiment, files_of_run(archive.folder()));
-  return evolve_and_report(experiment, *simulator, archive, farm.get(), output_of(given, log.get(), limit));
+  Farm* farm = nullptr;
+  const RunSpec spec = spec_of(given, folder, ranks, true, farm);
+  Run run = Run::open(spec, printed_events(), expected ? &expected->front() : nullptr);
+  if (run.is_complete()) return say_complete(run.archive());
+  const std::unique_ptr<GenerationLog> log = given_log(given, run.experiment(), files_of_run(folder));
+  return evolve_and_report(run, farm, output_of(given, log.get(), limit));
 }
 
 /// Whether --resume is given and the folder of --out holds a run, with `islands` islands. Throws UsageError for

@@ -2,13 +2,12 @@
 #pragma once
 
 #include <filesystem>
-#include <utility>
 
 #include "cluster/farm.hpp"
 #include "commands/run/generation_log.hpp"
 #include "commands/run/time_limit.hpp"
 #include "commands/shell/command.hpp"
-#include "evolution/archive/archive.hpp"
+#include "engine/run.hpp"
 
 namespace evodevo {
 
@@ -34,15 +33,9 @@ std::size_t begin_ending(const Experiment& experiment, const RunOutput& output, 
 /// Makes the run that arguments of the command `run` ask for, without other ranks, and returns the exit code.
 int make_run(const Given& given);
 
-/// Opens an archive to continue its run, and reads its experiment, as the options of `run` or `resume` ask. Throws if
-/// the run cannot be continued.
-std::pair<Archive, Experiment> reopened(const std::filesystem::path& folder, const Given& given,
-                                        const Experiment* expected = nullptr);
-
-/// Evolves until the run is finished or interrupted, with the ranks of `farm` or, if it is null, alone. Prints the
-/// outcome and returns the exit code. Throws std::runtime_error if anything fails, for example the simulator's device.
-/// The message gives the cause, the last complete generation and the command that continues the run.
-int evolve_and_report(const Experiment& experiment, Simulator& simulator, Archive& archive, Farm* farm = nullptr,
-                      const RunOutput& output = {});
+/// Advances a run until it is finished or interrupted. `farm` evaluates for it, or is null. Prints the outcome and
+/// returns the exit code. Throws std::runtime_error if anything fails, for example the simulator's device. The message
+/// gives the cause, the last complete generation and the command that continues the run.
+int evolve_and_report(Run& run, Farm* farm = nullptr, const RunOutput& output = {});
 
 }  // namespace evodevo

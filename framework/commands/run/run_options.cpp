@@ -1,6 +1,7 @@
 #include "commands/run/run_options.hpp"
 
 #include "commands/shell/options.hpp"
+#include "commands/shell/output/notices.hpp"
 
 namespace evodevo {
 
@@ -19,6 +20,20 @@ std::optional<Journal> given_journal(const Given& given) {
   const auto journal = journal_named(text);
   if (!journal) throw UsageError("--journal " + text + ": expected wal or delete");
   return journal;
+}
+
+RunSpec given_spec(const Given& given, const fs::path& folder) {
+  return {.folder = folder,
+          .journal = given_journal(given),
+          .plugin_path = given_plugin_path(given),
+          .machine = given_machine(given),
+          .gpus = given_gpus(given),
+          .other_versions = given.contains("allow-other-versions")};
+}
+
+RunEvents printed_events() {
+  return {.warning = [](const std::string& warning) { print_warnings({warning}); },
+          .step = [](const std::string& what, const std::function<void()>& work) { timed(what, work); }};
 }
 
 void add_mixed_option(Options& options) {

@@ -9,8 +9,7 @@
 #include "commands/run/generation_log.hpp"
 #include "commands/run/time_limit.hpp"
 #include "commands/shell/command.hpp"
-#include "evolution/archive/journal.hpp"
-#include "experiment/experiment.hpp"
+#include "engine/run.hpp"
 
 namespace evodevo {
 
@@ -19,6 +18,11 @@ void add_journal_option(Options& options);
 /// Returns the value of --journal, or nullopt if the option is not given. Throws UsageError if the value is neither wal
 /// nor delete.
 std::optional<Journal> given_journal(const Given& given);
+
+/// Returns what the options of `run` or `resume` say of the run in a folder. Throws UsageError.
+RunSpec given_spec(const Given& given, const std::filesystem::path& folder);
+/// Returns events that print warnings and, if verbose, how long steps take.
+RunEvents printed_events();
 
 /// Adds --mixed.
 void add_mixed_option(Options& options);

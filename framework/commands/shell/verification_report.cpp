@@ -34,19 +34,6 @@ void print(const Verification& verification, const Objective& objective) {
 
 }  // namespace
 
-std::vector<Verification> verify_best(const Experiment& experiment, Simulator& simulator, Archive& archive,
-                                      std::size_t count) {
-  const std::vector<ArchivedIndividual> individuals = best_of(archive, count);
-  std::vector<Champion> champions;
-  for (const ArchivedIndividual& individual : individuals)
-    champions.push_back(
-        {for_resimulation(archive, experiment, individual, simulator.device()), individual.result.objectives.front()});
-  std::vector<Verification> verifications =
-      timed("verifying the best individuals", [&] { return verify(experiment, simulator, champions); });
-  archive.add_verifications(verifications);
-  return verifications;
-}
-
 std::vector<Verification> verify_life_of_best(const Experiment& experiment, Simulator& simulator,
                                               const Archive& archive, std::size_t count, std::int64_t life) {
   const std::vector<ArchivedIndividual> individuals = best_of(archive, count);

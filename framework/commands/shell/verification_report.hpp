@@ -7,11 +7,8 @@
 
 namespace evodevo {
 
-/// Verifies the `count` best individuals of a run, and stores and returns the results.
-std::vector<Verification> verify_best(const Experiment& experiment, Simulator& simulator, Archive& archive,
-                                      std::size_t count);
-/// Verifies one life of each of them, and returns the results without storing them. Throws UsageError if one of them
-/// has had no such life.
+/// Verifies one life of each of the `count` best individuals of a run, and returns the results without storing them.
+/// Throws UsageError if one of them has had no such life.
 std::vector<Verification> verify_life_of_best(const Experiment& experiment, Simulator& simulator,
                                               const Archive& archive, std::size_t count, std::int64_t life);
 

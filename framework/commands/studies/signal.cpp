@@ -9,9 +9,9 @@
 #include "base/output_file.hpp"
 #include "base/text.hpp"
 #include "commands/commands.hpp"
-#include "commands/shell/builds.hpp"
 #include "commands/shell/options.hpp"
 #include "commands/shell/output/notices.hpp"
+#include "engine/builds.hpp"
 #include "evolution/islands/island_folders.hpp"
 #include "evolution/record_check.hpp"
 #include "signal/measuring.hpp"
@@ -116,7 +116,7 @@ int signal(const Given& given) {
     for (const Summary& summary : archive->generations()) generation = summary.generation;
   const MeasuredRobots measured = archive ? measured_of(*archive, experiment, count) : MeasuredRobots{count};
   const auto simulator = opened_simulator(experiment);
-  if (archive) warn_of_other_builds(experiment, *simulator, *archive);
+  if (archive) print_warnings(other_builds(experiment, *simulator, *archive));
   const Signal found = measure_signal(experiment, *simulator, measured, [](const std::string& what) {
     if (verbosity() != Verbosity::quiet) std::cerr << "measuring " << what << std::endl;
   });

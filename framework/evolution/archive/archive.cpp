@@ -18,7 +18,6 @@ namespace evodevo {
 namespace {
 
 namespace fs = std::filesystem;
-using boost::interprocess::file_lock;
 
 constexpr const char* lock_name = "lock";
 constexpr const char* journal_key =
@@ -44,18 +43,7 @@ void synchronise_entry_of(const fs::path& folder) {
   }
 }
 
-file_lock locked(const fs::path& folder) try {
-  const fs::path file = folder / lock_name;
-  if (!std::ofstream(file, std::ios::app))
-    throw ArchiveError(folder.string() + ": cannot be written; make it writable, or work on a copy of it");
-  file_lock lock(file.c_str());
-  if (!lock.try_lock())
-    throw ArchiveError(folder.string() + ": another evodevo process is writing this run; wait for it or stop it first");
-  return lock;
-} catch (const boost::interprocess::interprocess_exception& error) {
-  throw ArchiveError(folder.string() + ": cannot be locked (" + error.what() +
-                     "); choose a folder on a file system that can lock files");
-}
+FileLock locked(const fs::path& folder) { return FileLock(folder / lock_name); }
 
 /// Throws ArchiveError if the folder has anything in it but what a process leaves that ends while it creates an
 /// archive. A log or journal whose run.sqlite is gone is no such thing: there may be generations in it.

@@ -78,7 +78,7 @@ void throw_as_our_own(const SQLite::Exception& error, const fs::path& folder) {
   throw ArchiveError(text);
 }
 
-RunDatabase::RunDatabase(fs::path folder, int flags, std::optional<boost::interprocess::file_lock> lock)
+RunDatabase::RunDatabase(fs::path folder, int flags, std::optional<FileLock> lock)
     : folder_(std::move(folder)), lock_(std::move(lock)), database_(open(folder_, flags)) {
   limit();
 }

@@ -4,7 +4,6 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
-#include <boost/interprocess/sync/file_lock.hpp>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
@@ -14,6 +13,7 @@
 #include <string_view>
 
 #include "evolution/archive/error.hpp"
+#include "evolution/archive/file_lock.hpp"
 #include "evolution/archive/journal.hpp"
 
 namespace evodevo {
@@ -26,7 +26,7 @@ namespace evodevo {
 class RunDatabase {
  public:
   /// Opens the file in `folder`, or creates it if `flags` has SQLite::OPEN_CREATE.
-  RunDatabase(std::filesystem::path folder, int flags, std::optional<boost::interprocess::file_lock> lock);
+  RunDatabase(std::filesystem::path folder, int flags, std::optional<FileLock> lock);
   RunDatabase(const RunDatabase&) = delete;
   RunDatabase& operator=(const RunDatabase&) = delete;
   /// In the process that makes the run, merges the write-ahead log into the database file, so that the run is one file,
@@ -72,7 +72,7 @@ class RunDatabase {
   bool try_wal(bool must);
 
   std::filesystem::path folder_;
-  std::optional<boost::interprocess::file_lock> lock_;
+  std::optional<FileLock> lock_;
   mutable SQLite::Database database_;  ///< mutable because SQLite has no const interface, not even for reading
   Journal journal_ = Journal::rollback;
   bool is_exclusive_ = false;  ///< since prepare_for_rollback()

@@ -1,7 +1,6 @@
-#include "commands/shell/builds.hpp"
+#include "engine/builds.hpp"
 
 #include <algorithm>
-#include <iostream>
 
 #include "evolution/provenance.hpp"
 
@@ -31,24 +30,26 @@ bool has_taken_part(const Archive& archive, const Same& same) {
 
 }  // namespace
 
-void warn_of_other_builds(const Experiment& experiment, const Simulator& simulator, const Archive& archive) {
-  const auto warn = [](const auto& then, const auto& now, const std::string& which) {
-    std::cerr << "warning: the run began with " << title(then) << "; now "
-              << (then.version == now.version ? "another build of it" : "version " + now.version) << " is used, "
-              << which << "; results may differ\n";
+std::vector<std::string> other_builds(const Experiment& experiment, const Simulator& simulator,
+                                      const Archive& archive) {
+  std::vector<std::string> warnings;
+  const auto warn = [&](const auto& then, const auto& now, const std::string& which) {
+    warnings.push_back("the run began with " + title(then) + "; now " +
+                       (then.version == now.version ? "another build of it" : "version " + now.version) + " is used, " +
+                       which + "; results may differ");
   };
   const Provenance first = archive.provenances().front(), here = this_provenance(experiment, simulator.device());
-  if (has_taken_part(archive, [&](const Provenance& one) { return are_same_builds(one, here); })) return;
+  if (has_taken_part(archive, [&](const Provenance& one) { return are_same_builds(one, here); })) return warnings;
   if (first.program != here.program) warn(first, here, here.program);
   for_each_changed_operator(
       experiment, first, [&](const OperatorUse& then, const OperatorUse& now) { warn(then, now, now.file.string()); });
+  return warnings;
 }
 
-void warn_of_another_device(const Simulator& simulator, const Archive& archive) {
-  const auto is_this = [&](const Provenance& one) { return one.device == simulator.device(); };
-  if (const std::string before = archive.provenances().front().device; !has_taken_part(archive, is_this))
-    std::cerr << "warning: the run began on " << before << " and continues on " << simulator.device()
-              << "; results may differ, at first in the last bit\n";
+std::vector<std::string> another_device(const Simulator& simulator, const Archive& archive) {
+  if (has_taken_part(archive, [&](const Provenance& one) { return one.device == simulator.device(); })) return {};
+  return {"the run began on " + archive.provenances().front().device + " and continues on " + simulator.device() +
+          "; results may differ, at first in the last bit"};
 }
 
 void refuse_other_versions(const Experiment& experiment, const Archive& archive) {
