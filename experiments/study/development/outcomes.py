@@ -17,7 +17,6 @@ import argparse
 import collections
 import concurrent.futures
 import contextlib
-import csv
 import functools
 import itertools
 import json
@@ -38,8 +37,8 @@ from common.command_line import positive  # noqa: E402
 from compare import rows  # noqa: E402
 from compare.continued import Arm, Continuation, Program  # noqa: E402
 from compare.history import history, objective_of  # noqa: E402
+from compare.measured import report, write_csv  # noqa: E402
 from compare.scenarios import by_scenario  # noqa: E402
-from compare.standings import median_with_interval, table  # noqa: E402
 
 LIVES = 3
 ENOUGH = 0.5  # of the distance in the run
@@ -185,28 +184,6 @@ def line_of_the_best(program, out, arm, run):
         return None
     generations = {"the line began": last - best["age"], "the robot was born": best["generation"]}
     return {what: 100 * generation / last for what, generation in generations.items()}
-
-
-def report(title, of_arms):
-    """Returns a table of medians over the runs. `of_arms`: for each arm and each run what was measured of it."""
-    columns = list(dict.fromkeys(column for runs in of_arms.values() for run in runs.values() for column in run))
-
-    def cell(runs, column):
-        numbers = [run[column] for run in runs.values() if column in run]
-        return median_with_interval(numbers) if numbers else "-"
-
-    lines = [[f"`{arm}`", str(len(runs)), *(cell(runs, column) for column in columns)] for arm, runs in of_arms.items()]
-    return f"## {title}\n\n{table(['', 'runs', *columns], lines)}"
-
-
-def write_csv(known, file):
-    """Writes each number: of which arm and run, and what it is. `known`: the tables of report() by their titles."""
-    with file.open("w", newline="") as stream:
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(["arm", "run", "outcome", "quantity", "value"])
-        for title, of_arms in known:
-            for arm, runs in of_arms.items():
-                writer.writerows([arm, name, title, *number] for name, run in runs.items() for number in run.items())
 
 
 OUTCOMES = (

@@ -37,9 +37,9 @@ def best_at(archive, generation):
     return found and found[0]
 
 
-def at_parts(last, parts):
-    """Returns the generations after which each of the parts but the last ends, beginning with the first generation."""
-    return [part * last // parts for part in range(parts)]
+def at_parts(last):
+    """Returns the first generation, and those after which each part but the last ends."""
+    return [part * last // PARTS for part in range(PARTS)]
 
 
 def line_of(archive, number):
@@ -63,17 +63,17 @@ def keep(run, folder):
     with open_archive(unfinished) as archive:
         last = last_generation(archive)
         ids = {number for (number,) in archive.execute("SELECT id FROM individuals WHERE died IS NULL")}
-        ids |= {number for part in at_parts(last, PARTS) if (number := best_at(archive, part)) is not None}
+        ids |= {number for part in at_parts(last) if (number := best_at(archive, part)) is not None}
         ids |= set(line_of(archive, best_at(archive, last)))
         reduce(archive, ids)
     unfinished.rename(folder)
 
 
-def bests(start, folder, parts):
-    """Returns for each part of a run but the last a folder whose archive holds only the robot that was the best after
-    it. `start`: a folder that keep() has written."""
+def bests(start, folder):
+    """Returns for each generation of at_parts() a folder whose archive holds only the robot that was the best after it.
+    `start`: a folder that keep() has written."""
     with open_archive(start) as archive:
-        found = [best_at(archive, part) for part in at_parts(last_generation(archive), parts)]
+        found = [best_at(archive, part) for part in at_parts(last_generation(archive))]
     folders = []
     for part, number in enumerate(found):
         place = folder / str(part)

@@ -14,13 +14,10 @@ lives that answer the questions. Prints the tables and writes them to `outcomes/
 import argparse
 import collections
 import concurrent.futures
-import csv
 import functools
-import itertools
 import json
 import os
 import pathlib
-import statistics
 import subprocess
 import sys
 
@@ -33,14 +30,14 @@ import kept  # noqa: E402
 from common.command_line import positive  # noqa: E402
 from compare import rows  # noqa: E402
 from compare.continued import Arm, Continuation, Program  # noqa: E402
-from compare.standings import median_with_interval, number, table  # noqa: E402
+from compare.measured import report, write_csv  # noqa: E402
 
 LIVES = 12  # of a robot that is born again
 SEEN = 3  # the first of them, which selection may have seen
 ALONE = ("population=1", "children=1", "random_individuals=0", "evaluations=1", "spring_evaluations=0")
 ALONE = (*ALONE, "verify=0", "verify_front=off", f"lives={LIVES}")
 OTHER_SEED = 10000  # added to a run's seed: of new draws, and twice of the runs in which robots are born again
-QUARTERS = 4  # parts of a run, after each of which robots are measured without development
+SHARES = {"development needed, %", "marked, %", "needed, %"}  # of the runs: of each run all or nothing
 SCENES = {
     "slope": "scene.gravity.slope=-10",  # degrees, uphill along x
     "load": "scene.payload.share=0.5",  # of the body's mass
@@ -75,7 +72,7 @@ class Lives:
         self.of_end = {way: alone(arm, run, way.replace(" ", "-"), start, *more) for way, more in ways.items()}
         self.of_quarters = {}
         if arm.develops and start.exists():
-            for quarter, folder in enumerate(kept.bests(start, out / "starts" / arm.name / run.name, QUARTERS)):
+            for quarter, folder in enumerate(kept.bests(start, out / "starts" / arm.name / run.name)):
                 for way in ("same draws", "without development"):
                     name = f"quarter-{quarter}-{way.replace(' ', '-')}"
                     self.of_quarters[quarter, way] = alone(arm, run, name, folder, *ways[way])
@@ -90,7 +87,7 @@ class Lives:
     def share_without(self, quarter):
         """Returns the share of the distance that is left without development, or None if there is too little."""
         ways = ("same draws", "without development")
-        runs = self.of_end if quarter == QUARTERS else {way: self.of_quarters.get((quarter, way)) for way in ways}
+        runs = self.of_end if quarter == kept.PARTS else {way: self.of_quarters.get((quarter, way)) for way in ways}
         whole, rest = (runs.get(way) and mean_of_lives(self._out, runs[way]) for way in ways)
         return answers.share(rest, whole)
 
@@ -154,31 +151,6 @@ def told_of_signal(numbers):
     }
 
 
-def report(title, of_arms):
-    """Returns a table of medians over the runs, or of means where a column is in percent. `of_arms`: for each arm and each run what was measured of it."""
-    columns = list(dict.fromkeys(column for runs in of_arms.values() for run in runs.values() for column in run))
-
-    def cell(runs, column):
-        numbers = [run[column] for run in runs.values() if run.get(column) is not None]
-        if column.endswith(", %"):  # of which a run has all or nothing
-            return number(statistics.fmean(numbers)) if numbers else "-"
-        return median_with_interval(numbers) if numbers else "-"
-
-    lines = [[f"`{arm}`", str(len(runs)), *(cell(runs, column) for column in columns)] for arm, runs in of_arms.items()]
-    return f"## {title}\n\n{table(['', 'runs', *columns], lines)}"
-
-
-def write_csv(known, file):
-    """Writes each number: of which arm and run, and what it is. `known`: the tables of report() by their titles."""
-    with file.open("w", newline="") as stream:
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(["arm", "run", "outcome", "quantity", "value"])
-        for title, of_arms in known.items():
-            for arm, runs in of_arms.items():
-                for name, run in runs.items():
-                    writer.writerows([arm, name, title, *number] for number in run.items() if number[1] is not None)
-
-
 class Study:
     """The runs in the folder of a comparison, and what has been measured of them."""
 
@@ -236,6 +208,10 @@ def by_arm(numbers):
     return dict(grouped)
 
 
+def after(quarter):
+    return f"after {quarter} of {kept.PARTS}"
+
+
 def told_of_lives(study, lives):
     """Returns the tables of what the best robots go in lives to come, and of what is left without development."""
     distances, shares = {}, {}
@@ -261,7 +237,7 @@ def told_of_lives(study, lives):
             "marked, %": 100 * bool(best and MARKS.intersection(best["verification"]["marks"])),
         }
         if without is not None:
-            shares[arm, run] = {f"after {quarter} of {QUARTERS}": ways.share_without(quarter) for quarter in range(QUARTERS + 1)}
+            shares[arm, run] = {after(quarter): ways.share_without(quarter) for quarter in range(kept.PARTS + 1)}
     return by_arm(distances), by_arm(shares)
 
 
@@ -299,10 +275,10 @@ def main():
         ):
             known[title] = study.each(kind, count, functools.partial(measure, program, study.start))
     study.out.mkdir(exist_ok=True)
-    write_csv(known, study.out / "outcomes.csv")
+    write_csv(known.items(), study.out / "outcomes.csv")
     kind = "repetition" if given.repetition else "study"
-    answered = answers.section(distances, shares, f"after 0 of {QUARTERS}", f"after {QUARTERS} of {QUARTERS}", kind)
-    text = "\n".join([answered, *itertools.starmap(report, known.items())])
+    answered = answers.section(distances, shares, after(0), after(kept.PARTS), kind)
+    text = "\n".join([answered, *(report(title, of_arms, SHARES) for title, of_arms in known.items())])
     (study.out / "report.md").write_text(text)
     print(text)
 
