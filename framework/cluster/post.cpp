@@ -1,6 +1,7 @@
 #include "cluster/post.hpp"
 
 #include "base/input_error.hpp"
+#include "cluster/worker.hpp"
 
 namespace evodevo {
 
@@ -174,9 +175,9 @@ void Post::done() {
   wait_for_end();
 }
 
-void Post::fail(const std::string& host, const std::exception& error) {
+void Post::fail(const std::exception& error) {
   const bool of_input = dynamic_cast<const InputError*>(&error) != nullptr;
-  shared_.send(0, message::packed(message::Failure{host, error.what(), of_input}));
+  shared_.send(0, message::packed(message::Failure{host_name(), error.what(), of_input}));
   wait_for_end();
 }
 

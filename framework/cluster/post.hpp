@@ -51,7 +51,7 @@ class Post {
   /// Tells rank 0 that this group has ended its work, and waits until rank 0 ends the run.
   void done();
   /// Tells rank 0 why this group cannot go on, and waits until rank 0 ends the run.
-  void fail(const std::string& host, const std::exception& error);
+  void fail(const std::exception& error);
   /// On rank 0: waits until all other groups have ended their work. Returns why the first one failed, if one has.
   std::optional<std::string> others_done();
 

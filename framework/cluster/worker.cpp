@@ -15,11 +15,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-std::string host_name() {
-  char name[256] = {};
-  return gethostname(name, sizeof name - 1) == 0 ? name : "unknown host";
-}
-
 message::Hello hello_of(const Experiment& experiment, Simulator& simulator) {
   message::Hello hello;
   hello.provenance = this_provenance(experiment, simulator.device());
@@ -181,6 +176,17 @@ void send_answers(Channel& channel, Worker& worker) {
 
 }  // namespace
 
+std::string host_name() {
+  char name[256] = {};
+  return gethostname(name, sizeof name - 1) == 0 ? name : "unknown host";
+}
+
+void require_protocol(const std::string& bytes) {
+  if (const std::string protocol = message::protocol_of(bytes); protocol != message::protocol())
+    throw InputError("speaks protocol " + message::protocol() + ", but rank 0 speaks protocol " + protocol +
+                     "; give all ranks evodevo programs of the same version");
+}
+
 std::optional<std::string> first_message(Channel& channel) {
   return awaited(channel, {message::Kind::setup, message::Kind::lead}, patience_with_leader);
 }
@@ -212,9 +218,7 @@ void serve(Channel& channel, const std::string& bytes, const std::function<RankO
   std::unique_ptr<Simulator> simulator;
   std::unique_ptr<Worker> worker;
   try {
-    if (const std::string protocol = message::protocol_of(bytes); protocol != message::protocol())
-      throw InputError("speaks protocol " + message::protocol() + ", but rank 0 speaks protocol " + protocol +
-                       "; give all ranks evodevo programs of the same version");
+    require_protocol(bytes);
     const message::Setup setup = message::unpacked<message::Setup>(bytes);
     RankOptions given = options();
     experiment = read_experiment(setup.text, {.file = setup.name,

@@ -78,6 +78,12 @@ struct RankOptions {
   bool mixed = false;                              ///< see share_host()
 };
 
+/// Throws InputError if a Setup or Lead is of a rank 0 that speaks another protocol.
+void require_protocol(const std::string& bytes);
+
+/// The name of this host, for messages.
+std::string host_name();
+
 /// Waits for the message with which rank 0 begins: Setup, or Lead if the run has islands. Returns nullopt if it ends
 /// the run instead. Throws like do_jobs().
 std::optional<std::string> first_message(Channel& channel);

@@ -9,14 +9,14 @@
 namespace evodevo::conformance {
 namespace {
 
-constexpr std::uint32_t masses = 8;
+constexpr std::uint32_t corners = 8;  // of a cube
 
 /// The masses of a cube, with a spring from each to every other.
 BodyVersion cube() {
   BodyVersion version;
   Body& body = version.body;
   body.materials = {{1000, 0, 0, 0}, {1000, 0.1, 1, 0}};
-  for (std::uint32_t i = 0; i < masses; ++i) {
+  for (std::uint32_t i = 0; i < corners; ++i) {
     body.masses.push_back({{(i & 1) * 0.5, (i >> 1 & 1) * 0.5, (i >> 2 & 1) * 0.5}, 0.2});
     version.numbers.push_back(i);
     for (std::uint32_t other = 0; other < i; ++other) {
@@ -48,7 +48,7 @@ SampleBehaviour sample_behaviour(const Request& request, std::uint64_t seed, std
 
   // the body moves evenly from the first place to the last one, and shakes
   const auto last = static_cast<double>(last_sample(request));
-  std::vector<double> contact_times(masses, 0.0);
+  std::vector<double> contact_times(corners, 0.0);
   double contact_time = 0;
   for (double i = 0; i <= last; ++i) {
     const double share = last > 0 ? i / last : 0;

@@ -238,7 +238,7 @@ void live(const Experiment& experiment, Archive& archive, bool stop_early) {
       make_cpu_simulator(experiment.scene, experiment.stepping, static_cast<int>(experiment.threads));
   std::atomic<bool> stop = false;
   Observer observer;
-  observer.generation_done = [&](const Summary& summary) { stop = stop_early && summary.generation == 1; };
+  observer.generation_done = [&](std::int64_t, const Summary& summary) { stop = stop_early && summary.generation == 1; };
   evolve(experiment, *simulator, archive, stop, observer);
 }
 

@@ -1,11 +1,20 @@
 #include "engine/run.hpp"
 
+#include <algorithm>
+#include <mutex>
+
+#include "base/input_error.hpp"
+#include "cluster/post.hpp"
+#include "cluster/ranks.hpp"
 #include "engine/builds.hpp"
 #include "evolution/first_robots.hpp"
 #include "evolution/founders.hpp"
+#include "evolution/islands/island_folders.hpp"
+#include "evolution/islands/migration.hpp"
 #include "evolution/record_check.hpp"
 #include "evolution/resimulation.hpp"
 #include "experiment/device.hpp"
+#include "threads/parallel.hpp"
 
 namespace evodevo {
 namespace {
@@ -16,14 +25,7 @@ void warn(const RunEvents& events, const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) events.warning(warning);
 }
 
-std::unique_ptr<Simulator> opened(const Experiment& experiment, const RunEvents& events) {
-  std::unique_ptr<Simulator> simulator;
-  events.step("opening the simulator", [&] { simulator = make_simulator(experiment); });
-  return simulator;
-}
-
-}  // namespace
-
+/// Creates and returns the folder runs/NAME-N, where N is the first number from 1 for which there is no folder yet.
 fs::path new_run_folder(const std::string& name) {
   std::error_code error;
   fs::create_directories("runs", error);
@@ -34,16 +36,11 @@ fs::path new_run_folder(const std::string& name) {
   throw ArchiveError("runs: no folder can be created in it: " + error.message() + "; give another place with --out");
 }
 
-std::unique_ptr<Simulator> opened_to_begin(Experiment& experiment, const RunSpec& spec, const RunEvents& events) {
-  founders(experiment);  // so that a wrong start is reported before anything is written
-  warn(events, experiment.warnings);
-  warn(events, first_robots(experiment).warnings);
-  spec.share(experiment);
-  return opened(experiment, events);
-}
-
-std::pair<Archive, Experiment> reopened(const RunSpec& spec, const RunEvents& events, const Experiment* expected) {
-  Archive archive = Archive::resume(spec.folder, spec.journal);
+/// Opens an archive to continue its run, and reads its experiment. Throws ArchiveError if the run cannot be continued,
+/// or if `expected` is given and is not its experiment.
+std::pair<Archive, Experiment> reopened(const fs::path& folder, const RunSpec& spec, const RunEvents& events,
+                                        const Experiment* expected) {
+  Archive archive = Archive::resume(folder, spec.journal);
   std::optional<Experiment> experiment;
   events.step("reading the record of the run and loading its operators",
               [&] { experiment = recorded_experiment(archive, spec.plugin_path, spec.machine); });
@@ -51,6 +48,415 @@ std::pair<Archive, Experiment> reopened(const RunSpec& spec, const RunEvents& ev
   experiment->gpus = spec.gpus;
   events.step("checking that the run can be continued", [&] { check_resumable(archive, *experiment); });
   return {std::move(archive), *std::move(experiment)};
+}
+
+/// Reads the message with which rank 0 calls the groups of ranks. If it cannot be read, says so to rank 0.
+std::optional<message::Lead> read_lead(const std::string& bytes, Channel& ranks) {
+  try {
+    require_protocol(bytes);
+    return message::unpacked<message::Lead>(bytes);
+  } catch (const std::exception& error) {
+    report_failure(error, ranks);
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+struct Run::State {
+  RunSpec spec;
+  Observer observer = {};
+  std::vector<Experiment> experiments = {};
+  std::vector<Archive> archives = {};  ///< while ranks evolve islands, those of this rank's group
+  std::unique_ptr<Simulator> simulator = nullptr;
+  std::vector<std::uint32_t> next = {};  ///< generation of each island, where other ranks lead some of them
+  std::atomic<bool> never = false;
+  std::mutex telling = {};  ///< of what the observer is told
+  bool is_over = false;     ///< whether other ranks have been let go
+
+  // while it evolves; the evaluators also in between, except those of groups
+  std::unique_ptr<Exchange> between_islands = nullptr;  ///< in this process
+  std::unique_ptr<Post> post = nullptr;                 ///< between groups of ranks
+  std::vector<std::unique_ptr<Evaluator>> evaluators = {};
+  std::vector<Migration> migrations = {};
+  std::vector<Evolution> evolutions = {};
+  Farm* farm = nullptr;  ///< the only evaluator, if ranks evaluate for one population
+
+  explicit State(RunSpec given) : spec(std::move(given)) {}
+
+  std::atomic<bool>& stop() { return spec.stop ? *spec.stop : never; }
+  bool has_islands() const { return experiments.front().island > 0; }
+  bool has_groups() const { return spec.ranks && has_islands(); }
+
+  void open_archives(const RunEvents& events, const std::vector<std::int64_t>& islands,
+                     const std::vector<Experiment>* expected);
+  void open_simulator(const RunEvents& events);
+  void warn_of_changes(const RunEvents& events) const;
+  void make_evaluators(const RunEvents& events, bool is_record);
+  void create_archives();
+  void begin_work();
+  void call_groups();
+  bool make_generation();
+  void tell(std::int64_t island, const Summary& summary);
+  TimeSpent end_work();
+  std::optional<std::string> end_groups();
+  void lead_group();
+};
+
+/// Opens the archives of islands, or that of the only population.
+void Run::State::open_archives(const RunEvents& events, const std::vector<std::int64_t>& islands,
+                               const std::vector<Experiment>* expected) {
+  for (std::size_t i = 0; i < std::max<std::size_t>(1, islands.size()); ++i) {
+    const fs::path folder = islands.empty() ? spec.folder : island_folder(spec.folder, islands[i]);
+    auto [archive, experiment] = reopened(folder, spec, events, expected ? &expected->at(i) : nullptr);
+    if (islands.empty() && archive.island() > 0)
+      throw ArchiveError(folder.string() +
+                         ": is an island, which cannot be continued alone; give the folder of its run");
+    if (!islands.empty() && archive.island() != islands[i])
+      archive.refuse("it is island " + std::to_string(archive.island()) + " of a run; name its folder after that");
+    archives.push_back(std::move(archive));
+    experiments.push_back(std::move(experiment));
+  }
+}
+
+void Run::State::open_simulator(const RunEvents& events) {
+  Experiment& first = experiments.front();
+  if (spec.ranks) share_host(first, *spec.ranks, spec.mixed);
+  events.step("opening the simulator", [&] { simulator = make_simulator(first); });
+}
+
+void Run::State::warn_of_changes(const RunEvents& events) const {
+  warn(events, another_device(*simulator, archives.front()));
+  warn(events, other_builds(experiments.front(), *simulator, archives.front()));
+}
+
+/// `is_record`: see ExperimentSource.
+void Run::State::make_evaluators(const RunEvents& events, bool is_record) {
+  if (has_groups()) return;  // call_groups() does it
+  if (!spec.ranks) {
+    for (const Experiment& one : experiments) evaluators.push_back(std::make_unique<LocalEvaluator>(one, *simulator));
+    return;
+  }
+  const Experiment& only = experiments.front();
+  const message::Setup setup{.text = only.resolved, .name = only.name, .files = only.files, .is_record = is_record};
+  events.step("waiting for the other ranks", [&] {
+    auto made = std::make_unique<Farm>(only, *simulator, *spec.ranks, setup, FarmOptions{.mixed = spec.mixed});
+    farm = made.get();
+    evaluators.push_back(std::move(made));
+  });
+}
+
+void Run::State::create_archives() {
+  if (!has_islands()) {
+    archives.push_back(Archive::create(spec.folder, experiments.front(), simulator->device(), spec.journal));
+    return;
+  }
+  // a process that was killed may have created some of the islands
+  if (!is_half_created(spec.folder, static_cast<std::int64_t>(experiments.size()))) begin_run_folder(spec.folder);
+  for (const Experiment& island : experiments) {
+    const fs::path own = island_folder(spec.folder, island.island);
+    if (!is_begun(own)) {
+      archives.push_back(Archive::create(own, island, simulator->device(), spec.journal));
+      continue;
+    }
+    auto [archive, recorded] = reopened(own, spec, {}, &island);
+    refuse_other_versions(recorded, archive);
+    archives.push_back(std::move(archive));
+  }
+}
+
+Run::Run(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Run::Run(std::vector<Experiment> experiments, std::unique_ptr<Simulator> simulator, std::vector<Archive> archives,
+         std::atomic<bool>* stop)
+    : state_(std::make_unique<State>(RunSpec{.folder = archives.front().folder(), .stop = stop})) {
+  state_->experiments = std::move(experiments);
+  state_->simulator = std::move(simulator);
+  state_->archives = std::move(archives);
+  if (has_islands()) state_->spec.folder = folder().parent_path();
+  state_->make_evaluators({}, true);
+}
+Run::Run(Run&&) noexcept = default;
+Run::~Run() = default;
+
+Run Run::begin(std::vector<Experiment> experiments, RunSpec spec, const RunEvents& events) {
+  auto state = std::make_unique<State>(std::move(spec));
+  state->experiments = std::move(experiments);
+  const Experiment& first = state->experiments.front();
+  founders(first);  // so that a wrong start is reported before anything is written
+  warn(events, first.warnings);
+  warn(events, first_robots(first).warnings);
+  state->open_simulator(events);
+  state->make_evaluators(events, false);
+  if (state->spec.folder.empty()) state->spec.folder = new_run_folder(first.name);
+  state->create_archives();
+  return Run(std::move(state));
+}
+
+Run Run::open(RunSpec spec, const RunEvents& events, const std::vector<Experiment>* expected) {
+  auto state = std::make_unique<State>(std::move(spec));
+  const RunSpec& own = state->spec;
+  const std::size_t count = island_folders(own.folder).size();
+  if (expected && expected->size() != std::max<std::size_t>(1, count))
+    throw ArchiveError(own.folder.string() + ": has " + std::to_string(count) +
+                       " islands, but the experiment asks for " + std::to_string(expected->size()) +
+                       "; give the experiment of the run, or another --out");
+  std::vector<std::int64_t> islands;
+  for (std::size_t i = 1; i <= count; ++i) islands.push_back(static_cast<std::int64_t>(i));
+  state->open_archives(events, islands, expected);
+  Run run(std::move(state));
+  if (run.is_complete()) return run;
+  State& opened = *run.state_;
+  if (!own.other_versions)
+    for (std::size_t i = 0; i < opened.archives.size(); ++i)
+      refuse_other_versions(opened.experiments[i], opened.archives[i]);
+  opened.open_simulator(events);
+  opened.warn_of_changes(events);
+  opened.make_evaluators(events, true);
+  return run;
+}
+
+const fs::path& Run::folder() const { return state_->spec.folder; }
+const std::vector<Experiment>& Run::experiments() const { return state_->experiments; }
+const std::vector<Archive>& Run::archives() const { return state_->archives; }
+Simulator& Run::simulator() { return *state_->simulator; }
+std::vector<Share> Run::shares() const { return state_->farm ? state_->farm->shares() : std::vector<Share>(); }
+
+void Run::observe(Observer observer) { state_->observer = std::move(observer); }
+
+bool Run::is_finished() const {
+  const State& state = *state_;
+  if (!state.evolutions.empty()) return std::ranges::all_of(state.evolutions, &Evolution::is_finished);
+  for (std::size_t i = 0; i < state.archives.size(); ++i)
+    if (!evodevo::is_finished(state.experiments[i], state.archives[i].generations())) return false;
+  return true;
+}
+
+bool Run::is_complete() const {
+  const Experiment& first = experiments().front();
+  if (!state_->evolutions.empty() || !is_finished()) return false;
+  return !is_verifiable(first) ||
+         std::ranges::all_of(
+             best_of_islands(archives(), static_cast<std::size_t>(first.verify)),
+             [&](const IslandIndividual& one) { return archives()[one.island].verification(one.id).has_value(); });
+}
+
+void Run::State::tell(std::int64_t island, const Summary& summary) {
+  const std::lock_guard lock(telling);
+  observer.generation_done(island, summary);
+}
+
+/// Prepares what the generations need that are made until end_work().
+void Run::State::begin_work() {
+  if (!evolutions.empty()) return;
+  if (!has_islands()) {
+    evolutions.emplace_back(experiments.front(), *evaluators.front(), archives.front());
+    return;
+  }
+  if (next.empty()) next = next_generations(archives);  // unless rank 0 has said it
+  if (has_groups())
+    call_groups();
+  else
+    between_islands = std::make_unique<LocalExchange>();
+  Exchange& exchange = post ? post->exchange() : *between_islands;
+  for (const Experiment& island : experiments)
+    if (migrations.size() < archives.size()) migrations.emplace_back(island, exchange);
+  for (std::size_t i = 0; i < archives.size(); ++i) {
+    migrations[i].repeat_departures(archives[i], next);
+    evolutions.emplace_back(experiments[i], *evaluators[i], archives[i], &migrations[i]);
+  }
+}
+
+/// On rank 0, lets the other ranks open the archives of their islands. Prepares the evaluators of this rank's group.
+void Run::State::call_groups() {
+  Channel& ranks = *spec.ranks;
+  const Groups groups(ranks.size(), static_cast<std::int64_t>(next.size()));
+  if (ranks.rank() == 0) {
+    while (archives.size() > groups.islands(0).size()) archives.pop_back();
+    const message::Lead lead{.folder = fs::absolute(spec.folder).string(), .next = next};
+    for (int rank = 1; rank < ranks.size(); ++rank) ranks.send(rank, message::packed(lead));
+  }
+  post = std::make_unique<Post>(ranks, groups, stop(),
+                                [this](std::int64_t island, const Summary& summary) { tell(island, summary); });
+  for (std::size_t i = 0; i < archives.size(); ++i) {
+    const Experiment& island = experiments[i];
+    if (post->group().size() == 1) {
+      evaluators.push_back(std::make_unique<LocalEvaluator>(island, *simulator));
+      continue;
+    }
+    const message::Setup setup{.text = island.resolved, .name = island.name, .files = island.files, .is_record = true};
+    evaluators.push_back(
+        std::make_unique<Farm>(island, *simulator, post->group(), setup, FarmOptions{.mixed = spec.mixed}));
+  }
+}
+
+/// Returns whether any was made.
+bool Run::State::make_generation() {
+  if (!has_islands()) return evolutions.front().advance(stop(), observer);
+  std::uint32_t furthest_behind = ~0u;
+  for (const Evolution& one : evolutions)
+    if (!one.is_finished()) furthest_behind = std::min(furthest_behind, one.generation());
+  std::vector<std::size_t> due;
+  for (std::size_t i = 0; i < evolutions.size(); ++i)
+    if (!evolutions[i].is_finished() && evolutions[i].generation() == furthest_behind) due.push_back(i);
+  std::vector<std::optional<Summary>> made(due.size());
+  std::exception_ptr failure;
+  try {
+    on_own_threads(due.size(), [&](std::size_t k) {
+      Observer own;
+      own.generation_done = [&](std::int64_t, const Summary& summary) { made[k] = summary; };
+      try {
+        evolutions[due[k]].advance(stop(), own);
+      } catch (...) {
+        (post ? post->exchange() : *between_islands).abandon();  // others may wait for its migrants
+        throw;
+      }
+    });
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  bool any = false;
+  for (std::size_t k = 0; k < due.size(); ++k) {
+    if (!made[k]) continue;
+    tell(experiments[due[k]].island, *made[k]);
+    any = true;
+  }
+  if (failure) std::rethrow_exception(failure);
+  return any;
+}
+
+/// Waits until all generations have been committed, and returns the time that has been spent on them.
+TimeSpent Run::State::end_work() {
+  TimeSpent sum;
+  std::exception_ptr failure;
+  for (std::size_t i = 0; i < evolutions.size(); ++i) {
+    try {
+      const TimeSpent time = evolutions[i].pause();
+      record_time_spent(archives[i], time);
+      sum += time;
+    } catch (...) {
+      if (!failure) failure = std::current_exception();
+    }
+  }
+  evolutions.clear();
+  migrations.clear();
+  between_islands.reset();
+  next.clear();
+  if (failure) std::rethrow_exception(failure);
+  return sum;
+}
+
+/// On rank 0, waits until the other groups have ended, and opens the archives of all islands. Returns why one has
+/// failed.
+std::optional<std::string> Run::State::end_groups() {
+  if (!post) return std::nullopt;
+  std::optional<std::string> failure = post->others_done();
+  evaluators.clear();
+  post.reset();
+  is_over = true;
+  end_run(*spec.ranks);
+  archives.clear();
+  for (const Experiment& island : experiments)
+    archives.push_back(Archive::annotate(island_folder(spec.folder, island.island)));
+  return failure;
+}
+
+bool Run::advance() {
+  State& state = *state_;
+  if (!state.simulator || state.is_over) return false;
+  try {
+    state.begin_work();
+    return state.make_generation();
+  } catch (...) {
+    // the next call goes on from the generations that are committed
+    if (state.post) state.stop() = true;
+    try {
+      state.end_work();
+    } catch (const std::exception&) {  // a consequence of the first failure, which is the one to tell
+    }
+    state.end_groups();
+    throw;
+  }
+}
+
+TimeSpent Run::pause() {
+  const TimeSpent time = state_->end_work();
+  if (const std::optional<std::string> failure = state_->end_groups()) throw std::runtime_error(*failure);
+  return time;
+}
+
+std::vector<VerifiedBest> Run::verify(std::size_t count) {
+  pause();
+  State& state = *state_;
+  std::vector<VerifiedBest> verified;
+  if (!state.simulator) return verified;
+  if (state.farm) state.farm->finish();
+  state.is_over = state.is_over || state.farm;
+  std::vector<std::size_t> counts(state.archives.size());  // of an island, its own best come first among all
+  for (const IslandIndividual& one : best_of_islands(state.archives, count)) ++counts[one.island];
+  for (std::size_t i = 0; i < counts.size(); ++i)
+    if (counts[i] > 0)
+      verified.push_back({state.experiments[i].island,
+                          verify_best(state.experiments[i], *state.simulator, state.archives[i], counts[i])});
+  return verified;
+}
+
+std::vector<VerifiedBest> Run::finish() {
+  pause();
+  const Experiment& first = experiments().front();
+  return is_verifiable(first) ? verify(static_cast<std::size_t>(first.verify)) : std::vector<VerifiedBest>();
+}
+
+/// Evolves the islands of a group other than that of rank 0.
+void Run::State::lead_group() {
+  try {
+    begin_work();
+    observer.generation_done = [this](std::int64_t island, const Summary& summary) {
+      post->tell_generation(island, summary);
+    };
+    while (make_generation()) {
+    }
+    end_work();
+  } catch (const std::exception& error) {
+    if (!post) throw;
+    evolutions.clear();
+    archives.clear();
+    return post->fail(error);
+  }
+  archives.clear();  // rank 0 opens them
+  post->done();
+}
+
+void Run::serve(Channel& ranks, const std::function<RunSpec()>& spec, const RunEvents& events) {
+  const auto options = [&] {
+    RunSpec given = spec();
+    return RankOptions{std::move(given.plugin_path), std::move(given.gpus), std::move(given.machine), given.mixed};
+  };
+  const std::optional<std::string> first = first_message(ranks);
+  if (!first) return;
+  if (message::kind_of(*first) != message::Kind::lead) return evodevo::serve(ranks, *first, options);
+  const std::optional<message::Lead> lead = read_lead(*first, ranks);
+  if (!lead) return;
+  const Groups groups(ranks.size(), static_cast<std::int64_t>(lead->next.size()));
+  const int group = groups.of_rank(ranks.rank());
+  if (groups.first_rank(group) != ranks.rank()) {
+    GroupChannel of_group(ranks, groups.ranks(group));
+    if (const std::optional<std::string> setup = first_message(of_group)) evodevo::serve(of_group, *setup, options);
+    return;
+  }
+  std::atomic<bool> stop = false;
+  std::optional<State> state;
+  try {
+    state.emplace(spec());
+    state->spec.folder = lead->folder;
+    state->spec.ranks = &ranks;
+    state->spec.stop = &stop;
+    state->next = lead->next;
+    state->open_archives({.step = events.step}, groups.islands(group), nullptr);
+    state->open_simulator(events);
+    state->lead_group();
+  } catch (const std::exception& error) {
+    report_failure(error, ranks);
+  }
 }
 
 std::vector<Verification> verify_best(const Experiment& experiment, Simulator& simulator, Archive& archive,
@@ -64,80 +470,6 @@ std::vector<Verification> verify_best(const Experiment& experiment, Simulator& s
   std::vector<Verification> verifications = evodevo::verify(experiment, simulator, champions);
   archive.add_verifications(verifications);
   return verifications;
-}
-
-Run Run::begin(Experiment experiment, const RunSpec& spec, const RunEvents& events) {
-  auto own = std::make_unique<Experiment>(std::move(experiment));
-  auto simulator = opened_to_begin(*own, spec, events);
-  auto evaluator = spec.evaluator(*own, *simulator);
-  const fs::path folder = spec.folder.empty() ? new_run_folder(own->name) : spec.folder;
-  Archive archive = Archive::create(folder, *own, simulator->device(), spec.journal);
-  return {std::move(own), std::move(simulator), std::move(evaluator), std::move(archive)};
-}
-
-Run Run::open(const RunSpec& spec, const RunEvents& events, const Experiment* expected) {
-  auto [archive, experiment] = reopened(spec, events, expected);
-  if (archive.island() > 0)
-    throw ArchiveError(spec.folder.string() +
-                       ": is an island, which cannot be continued alone; give the folder of its run");
-  auto own = std::make_unique<Experiment>(std::move(experiment));
-  if (evodevo::is_complete(archive, *own)) return {std::move(own), nullptr, nullptr, std::move(archive)};
-  if (!spec.other_versions) refuse_other_versions(*own, archive);
-  spec.share(*own);
-  auto simulator = opened(*own, events);
-  warn(events, another_device(*simulator, archive));
-  warn(events, other_builds(*own, *simulator, archive));
-  auto evaluator = spec.evaluator(*own, *simulator);
-  return {std::move(own), std::move(simulator), std::move(evaluator), std::move(archive)};
-}
-
-Run::Run(std::unique_ptr<Experiment> experiment, std::unique_ptr<Simulator> simulator,
-         std::unique_ptr<Evaluator> evaluator, Archive archive)
-    : experiment_(std::move(experiment)),
-      simulator_(std::move(simulator)),
-      evaluator_(std::move(evaluator)),
-      archive_(std::make_unique<Archive>(std::move(archive))) {}
-Run::Run(Experiment experiment, std::unique_ptr<Simulator> simulator, Archive archive)
-    : Run(std::make_unique<Experiment>(std::move(experiment)), std::move(simulator), nullptr, std::move(archive)) {
-  evaluator_ = std::make_unique<LocalEvaluator>(*experiment_, *simulator_);
-}
-Run::Run(Run&&) noexcept = default;
-Run::~Run() = default;
-
-bool Run::is_finished() const {
-  return evolution_ ? evolution_->is_finished() : evodevo::is_finished(*experiment_, archive_->generations());
-}
-
-bool Run::is_complete() const { return !evolution_ && evodevo::is_complete(*archive_, *experiment_); }
-
-bool Run::advance(const std::atomic<bool>& stop, const Observer& observer) {
-  if (!evaluator_) return false;  // opened, but complete
-  if (!evolution_) evolution_ = std::make_unique<Evolution>(*experiment_, *evaluator_, *archive_);
-  try {
-    return evolution_->advance(stop, observer);
-  } catch (...) {
-    pause();  // another one goes on from the generations that are committed
-    throw;
-  }
-}
-
-TimeSpent Run::pause() {
-  if (!evolution_) return {};
-  const std::unique_ptr<Evolution> paused = std::move(evolution_);
-  const TimeSpent time = paused->pause();
-  record_time_spent(*archive_, time);
-  return time;
-}
-
-std::vector<Verification> Run::verify(std::size_t count) {
-  pause();
-  return simulator_ ? verify_best(*experiment_, *simulator_, *archive_, count) : std::vector<Verification>();
-}
-
-std::vector<Verification> Run::finish() {
-  pause();
-  if (!is_verifiable(*experiment_)) return {};
-  return verify(static_cast<std::size_t>(experiment_->verify));
 }
 
 }  // namespace evodevo

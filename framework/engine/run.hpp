@@ -1,16 +1,16 @@
 // A run: begun in a folder or opened from it, advanced generation by generation, and finished.
 //
-//   Experiment, RunSpec ─► begin ─┐
-//                                 ├─► advance ─► advance ─► … ─► pause ─► finish
-//                RunSpec ─► open ─┘
+//   Experiments, RunSpec ─► begin ─┐
+//                                  ├─► advance ─► advance ─► … ─► pause ─► finish
+//                RunSpec ─► open ──┘
 //
-//   std::atomic<bool> stop = false;  // set on another thread, it ends the run after the generation under way
-//   Run run = Run::begin(read_experiment({"experiments/quickstart.toml"}), {.folder = "runs/quickstart"});
-//   while (run.advance(stop)) {
+//   Run run = Run::begin(read_islands({"experiments/quickstart.toml"}), {.folder = "runs/quickstart"});
+//   while (run.advance()) {
 //   }
 //   run.finish();
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "cluster/farm.hpp"
 #include "evolution/evolution.hpp"
 
 namespace evodevo {
@@ -30,13 +31,11 @@ struct RunSpec {
   std::vector<Override> machine = {};                   ///< of open(): values of keys of [simulation], such as threads
   std::vector<int> gpus = {};                           ///< of open(): Experiment::gpus
   bool other_versions = false;                          ///< of open(): whether operators may have other versions
-  /// Takes a share of the threads and GPUs of this host, if other processes work on the run.
-  std::function<void(Experiment&)> share = [](Experiment&) {};
-  /// Makes what evaluates the individuals; by default, this process does it alone.
-  std::function<std::unique_ptr<Evaluator>(const Experiment&, Simulator&)> evaluator =
-      [](const Experiment& experiment, Simulator& simulator) -> std::unique_ptr<Evaluator> {
-    return std::make_unique<LocalEvaluator>(experiment, simulator);
-  };
+  Channel* ranks = nullptr;  ///< the processes that work on the run, of which this is rank 0; null: this one alone
+  bool mixed = false;        ///< whether ranks may differ in their devices and builds
+  /// If another thread or a signal handler sets it, the run ends after the generation under way. A rank that fails
+  /// sets it, too.
+  std::atomic<bool>* stop = nullptr;
 };
 
 /// What a run tells while it begins or opens.
@@ -47,67 +46,74 @@ struct RunEvents {
       [](const std::string&, const std::function<void()>& work) { work(); };
 };
 
-/// A run with one population. Whoever holds it decides when it goes on and when it ends; nothing of it is global to the
-/// process, so that a process can hold many. One thread at a time may use it.
+/// The verifications of a population, best first.
+struct VerifiedBest {
+  std::int64_t island = 0;  ///< 0: the run has no islands
+  std::vector<Verification> verifications;
+};
+
+/// A run with one population or with islands, of this process alone or of several ranks. Whoever holds it decides when
+/// it goes on and when it ends; nothing of it is global to the process, so that a process can hold many. One thread at
+/// a time may use it.
 class Run {
  public:
-  /// Begins a run. Throws ConfigError or ArchiveError, before anything is written, if the experiment's start, its
-  /// device or the folder cannot be used.
-  static Run begin(Experiment experiment, const RunSpec& spec, const RunEvents& events = {});
-  /// Opens a run to go on with it. Throws ArchiveError if it cannot be continued, or if `expected` is given and is not
-  /// its experiment. If it is complete, no device is opened, there is no simulator(), and
-  /// the other functions do nothing.
-  static Run open(const RunSpec& spec, const RunEvents& events = {}, const Experiment* expected = nullptr);
-  /// Makes a run of its parts.
-  Run(Experiment experiment, std::unique_ptr<Simulator> simulator, Archive archive);
+  /// Begins a run with the experiments of its islands, or with its only one. Throws ConfigError or ArchiveError, before
+  /// anything is written, if the experiment's start, its device or the folder cannot be used.
+  static Run begin(std::vector<Experiment> experiments, RunSpec spec, const RunEvents& events = {});
+  /// Opens a run to go on with it. Throws ArchiveError if it cannot be continued, or if `expected` is given and does
+  /// not have its experiments. If it is complete, no device is opened, there is no simulator(), and the other functions
+  /// do nothing.
+  static Run open(RunSpec spec, const RunEvents& events = {}, const std::vector<Experiment>* expected = nullptr);
+  /// Makes a run of its parts: of the experiments of its islands and their archives, or of the only ones. `stop` is
+  /// RunSpec::stop.
+  Run(std::vector<Experiment> experiments, std::unique_ptr<Simulator> simulator, std::vector<Archive> archives,
+      std::atomic<bool>* stop = nullptr);
   Run(Run&&) noexcept;
   ~Run();
 
-  const Experiment& experiment() const { return *experiment_; }
-  Simulator& simulator() { return *simulator_; }
-  /// May be used before the first advance() and after pause().
-  Archive& archive() { return *archive_; }
+  const std::filesystem::path& folder() const;
+  /// Of the islands in the order of their numbers, or the only one.
+  const std::vector<Experiment>& experiments() const;
+  /// Of the islands in the order of their numbers, or the only one. May be used before the first advance() and after
+  /// pause().
+  const std::vector<Archive>& archives() const;
+  bool has_islands() const { return experiments().front().island > 0; }
+  Simulator& simulator();
+  /// What each rank has contributed; empty for one process, and for islands.
+  std::vector<Share> shares() const;
+
+  /// Lets the run call these functions from now on. It never calls two at once, but perhaps on a thread of its own.
+  void observe(Observer observer);
 
   /// Whether the run has used up what the experiment allows.
   bool is_finished() const;
   /// Whether there is nothing left to do: neither evolution nor verification; false between advance() and pause().
   bool is_complete() const;
-  /// Makes the next generation, and commits it or begins to. Returns false if the run is finished or `stop` is set; a
-  /// generation that has begun is completed. Throws what the device or an operator throws; then the run is as after the
-  /// last generation that was committed, from which the next call goes on.
-  bool advance(const std::atomic<bool>& stop, const Observer& observer = {});
+  /// Makes the next generation, and commits it or begins to. Islands make theirs at the same time; those that are ahead
+  /// wait for the others. Returns false if the run is finished or RunSpec::stop is set; a generation that has begun is
+  /// completed. Throws what the device or an operator throws; then the run is as after the last generation that was
+  /// committed, from which the next call goes on, unless ranks evolve islands.
+  bool advance();
   /// Waits until all generations have been committed, and adds the time of this process to the run's record. Returns
-  /// that time.
+  /// that time, summed over islands. If ranks evolve islands, waits until all have ended, and throws
+  /// std::runtime_error if one has failed; then no call advances the run any more.
   TimeSpent pause();
-  /// pause(), and verifies the best `count` individuals, and stores the results.
-  std::vector<Verification> verify(std::size_t count);
+  /// pause(), lets the other ranks go, and verifies the best `count` individuals, and stores the results.
+  std::vector<VerifiedBest> verify(std::size_t count);
   /// pause(), and verifies as many of the best as the experiment asks for, if its first objective can be verified.
-  std::vector<Verification> finish();
+  std::vector<VerifiedBest> finish();
+
+  /// Lets this process, which is not rank 0, work for a run of rank 0 until that ends it. `spec` says what this process
+  /// was told of the run (machine, gpus, plugin_path, mixed …); what it throws is told to rank 0.
+  static void serve(Channel& ranks, const std::function<RunSpec()>& spec, const RunEvents& events = {});
 
  private:
-  Run(std::unique_ptr<Experiment> experiment, std::unique_ptr<Simulator> simulator,
-      std::unique_ptr<Evaluator> evaluator, Archive archive);
-
-  std::unique_ptr<Experiment> experiment_;
-  std::unique_ptr<Simulator> simulator_;
-  std::unique_ptr<Evaluator> evaluator_;
-  std::unique_ptr<Archive> archive_;
-  std::unique_ptr<Evolution> evolution_;  ///< from the first advance() to pause()
+  struct State;
+  explicit Run(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
 };
 
-/// Creates and returns the folder runs/NAME-N, where N is the first number from 1 for which there is no folder yet.
-std::filesystem::path new_run_folder(const std::string& name);
-
-/// Opens the simulator with which a run begins, after telling the warnings of its experiment. Throws ConfigError or
-/// ArchiveError if the experiment's start or its device cannot be used.
-std::unique_ptr<Simulator> opened_to_begin(Experiment& experiment, const RunSpec& spec, const RunEvents& events);
-
-/// Opens an archive to continue its run, and reads its experiment. Throws ArchiveError if the run cannot be continued,
-/// or if `expected` is given and is not its experiment.
-std::pair<Archive, Experiment> reopened(const RunSpec& spec, const RunEvents& events,
-                                        const Experiment* expected = nullptr);
-
-/// Verifies the `count` best individuals of a run, and stores and returns the results.
+/// Verifies the `count` best individuals of a population, and stores and returns the results.
 std::vector<Verification> verify_best(const Experiment& experiment, Simulator& simulator, Archive& archive,
                                       std::size_t count);
 

@@ -218,40 +218,44 @@ bool is_verified(const Archive& archive, const Settings& settings) {
   return std::ranges::all_of(best, [&](std::uint32_t id) { return archive.verification(id).has_value(); });
 }
 
-bool is_complete(const Archive& archive, const Experiment& experiment) {
-  return is_finished(experiment, archive.generations()) &&
-         (!is_verifiable(experiment) || is_verified(archive, experiment));
-}
-
 namespace {
 
-/// Calls `use(key, time)` for each of the times, with the key of its entry in the run's record.
-template <class Time, class Use>
-void for_each_time(Time& time, const Use& use) {
-  use("seconds", time.whole);
-  use("seconds_breed", time.breed);
-  use("seconds_select", time.select);
-  use("seconds_archive", time.archive);
-  use("seconds_decode", time.evaluation.decode);
-  use("seconds_simulate", time.evaluation.simulate);
-  use("seconds_develop", time.evaluation.develop);
-  use("seconds_verify", time.verify);
-}
+struct TimeEntry {
+  const char* key;  ///< of the entry in the run's record
+  double& (*of)(TimeSpent& time);
+};
+
+constexpr TimeEntry time_entries[] = {
+    {"seconds", [](TimeSpent& time) -> double& { return time.whole; }},
+    {"seconds_breed", [](TimeSpent& time) -> double& { return time.breed; }},
+    {"seconds_select", [](TimeSpent& time) -> double& { return time.select; }},
+    {"seconds_archive", [](TimeSpent& time) -> double& { return time.archive; }},
+    {"seconds_decode", [](TimeSpent& time) -> double& { return time.evaluation.decode; }},
+    {"seconds_simulate", [](TimeSpent& time) -> double& { return time.evaluation.simulate; }},
+    {"seconds_develop", [](TimeSpent& time) -> double& { return time.evaluation.develop; }},
+    {"seconds_verify", [](TimeSpent& time) -> double& { return time.verify; }},
+};
 
 }  // namespace
 
+TimeSpent& TimeSpent::operator+=(const TimeSpent& other) {
+  TimeSpent added = other;
+  for (const TimeEntry& entry : time_entries) entry.of(*this) += entry.of(added);
+  return *this;
+}
+
 void record_time_spent(Archive& archive, const TimeSpent& time) {
+  TimeSpent whole = recorded_time_spent(archive).value_or(TimeSpent());
+  whole += time;
   std::map<std::string, std::string> entries;
-  for_each_time(time, [&](const char* key, double seconds) {
-    entries[key] = to_text(archive.find_seconds(key).value_or(0) + seconds);
-  });
+  for (const TimeEntry& entry : time_entries) entries[entry.key] = to_text(entry.of(whole));
   archive.set_records(entries);
 }
 
 std::optional<TimeSpent> recorded_time_spent(const Archive& archive) {
   if (!archive.find_record("seconds")) return std::nullopt;
   TimeSpent time;
-  for_each_time(time, [&](const char* key, double& seconds) { seconds = archive.find_seconds(key).value_or(0); });
+  for (const TimeEntry& entry : time_entries) entry.of(time) = archive.find_seconds(entry.key).value_or(0);
   return time;
 }
 
@@ -293,7 +297,6 @@ struct Evolution::State {
   std::vector<Individual> population = archive.population();
   Remembered remembered{archive.memory(), {}};
   std::unique_ptr<Work> work = nullptr;
-  bool has_ended = false;  ///< whether the other islands know that this one is finished
   PhaseTimes before = evaluator.phase_times();
   TimeSpent time = {};
 
@@ -341,8 +344,9 @@ void Evolution::State::make_generation(const std::vector<Migrant>& migrants, con
   work->writer.begin({std::move(newborns), std::move(measured_again), std::move(dropped), work->lives.committed(),
                       summary, remembered, refusals, departures});
   if (migration) migration->depart(departures, population, generation);
-  observer.generation_done(summary);
   summaries.push_back(summary);
+  if (migration && is_finished()) migration->end();
+  observer.generation_done(experiment.island, summary);
 }
 
 Evolution::Evolution(const Experiment& experiment, Evaluator& evaluator, Archive& archive, Migration* migration)
@@ -351,14 +355,11 @@ Evolution::Evolution(Evolution&&) noexcept = default;
 Evolution::~Evolution() = default;
 
 bool Evolution::is_finished() const { return state_->is_finished(); }
+std::uint32_t Evolution::generation() const { return static_cast<std::uint32_t>(state_->summaries.size()); }
 
 bool Evolution::advance(const std::atomic<bool>& stop, const Observer& observer) {
   State& state = *state_;
-  if (state.is_finished()) {
-    if (state.migration && state.work && !std::exchange(state.has_ended, true)) state.migration->end();
-    return false;
-  }
-  if (stop) return false;
+  if (state.is_finished() || stop) return false;
   const auto begin = Clock::now();
   if (!state.work) state.work = std::make_unique<State::Work>(state);
   const auto generation = static_cast<std::uint32_t>(state.summaries.size());

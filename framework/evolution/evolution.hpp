@@ -14,8 +14,9 @@ class Migration;
 
 /// Functions that the generation loop calls to report its progress.
 struct Observer {
-  /// Called after each generation, which may still be being written into the archive (ArchiveWriter).
-  std::function<void(const Summary&)> generation_done = [](const Summary&) {};
+  /// Called after each generation, which may still be being written into the archive (ArchiveWriter), with the number
+  /// of its island, from 1, or 0 if the run has no islands.
+  std::function<void(std::int64_t island, const Summary&)> generation_done = [](std::int64_t, const Summary&) {};
   /// Called with the fraction of the current generation that has been simulated, 0 to 1.
   std::function<void(double)> generation_progress = [](double) {};
 };
@@ -28,6 +29,8 @@ struct TimeSpent {
   double select = 0;      ///< and ranking and selecting
   double archive = 0;     ///< writing the archive, perhaps while the next generation is evaluated
   PhaseTimes evaluation;  ///< time in each phase of evaluation, without that of verification
+
+  TimeSpent& operator+=(const TimeSpent& other);
 };
 
 /// Adds the time that this process has spent to the times in the run's record. The time of a process that is killed is
@@ -44,8 +47,6 @@ BestAndMedian best_and_median(std::vector<double> scores, bool maximise);
 bool is_finished(const Settings& settings, const std::vector<Summary>& generations);
 /// Returns whether the best of a run, as many as its experiment says, have been verified.
 bool is_verified(const Archive& archive, const Settings& settings);
-/// Returns whether a run has nothing left to do: neither evolution nor verification.
-bool is_complete(const Archive& archive, const Experiment& experiment);
 
 /// The generation loop of the run in an archive, one generation at a time. A run that was interrupted after any
 /// generation and continued gives the same results as one that was not interrupted. With a migration, the experiment is
@@ -60,6 +61,8 @@ class Evolution {
 
   /// Whether the run has used up what the experiment allows.
   bool is_finished() const;
+  /// The number of the next generation.
+  std::uint32_t generation() const;
   /// Makes the next generation and commits it, or begins to (ArchiveWriter). Returns false, and makes none, if the run
   /// is finished, or if `stop` is set, also while it waits for migrants; a generation that has begun is completed.
   bool advance(const std::atomic<bool>& stop, const Observer& observer = {});

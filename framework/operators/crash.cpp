@@ -79,7 +79,7 @@ void leave_crashes_unnamed() {
 
 }  // namespace evodevo
 
-// These replace the C library's functions also for the libraries of operators, because the dynamic linker searches the
+// This replaces the C library's function also for the libraries of operators, because the dynamic linker searches the
 // program for a symbol before it searches libraries. An operator must not get as far as the handlers that exit() calls:
 // they destroy what other threads are still using.
 extern "C" __attribute__((visibility("default"))) void exit(int status) noexcept {
@@ -87,9 +87,3 @@ extern "C" __attribute__((visibility("default"))) void exit(int status) noexcept
   reinterpret_cast<void (*)(int)>(dlsym(RTLD_NEXT, "exit"))(status);
   __builtin_unreachable();
 }
-extern "C" __attribute__((visibility("default"))) void _exit(int status) {
-  evodevo::refuse_to_exit(status);
-  while (true) syscall(SYS_exit_group, status);
-}
-extern "C" __attribute__((visibility("default"))) void _Exit(int status) noexcept { _exit(status); }
-extern "C" __attribute__((visibility("default"))) void quick_exit(int status) noexcept { _exit(status); }

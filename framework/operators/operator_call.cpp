@@ -1,7 +1,6 @@
 #include "operators/operator_call.hpp"
 
 #include <pthread.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <csignal>
@@ -26,7 +25,6 @@ struct Slot {
   std::atomic<const OperatorTitle*> title = nullptr;
   std::atomic<std::int64_t> individual = CallSubject::none, cycle = CallSubject::none, seed = CallSubject::none;
 
-  pid_t process = 0;  ///< the process that began the call
   std::atomic<bool> taken = true;
   Slot* next = nullptr;
   const char* lowest_of_stack = nullptr;
@@ -118,15 +116,6 @@ void name_change(const OperatorCall& call, const std::string& what) {
             << (flushes ? ", such as the compiler's option -ffast-math" : "") << '\n';
 }
 
-/// Ends a child process in which an operator returns, and which would otherwise go on with the run, too. It leaves the
-/// files and the threads of the run alone.
-[[noreturn]] void end_copy(const OperatorCall& call) {
-  std::cerr << "warning: " + text_of(call) +
-                   ": it called fork() and returned in the child process, which has been ended; let the child end with "
-                   "_exit()\n";
-  _exit(EXIT_FAILURE);
-}
-
 }  // namespace
 
 const OperatorTitle* lasting_title(std::string_view kind, std::string_view name, const std::string& file) {
@@ -164,13 +153,9 @@ void for_each_call(const std::function<void(const void*, std::uint64_t, const Op
   }
 }
 
-InOperator::InOperator(const OperatorCall& call) : before_(slot().get()) {
-  slot().set(call);
-  slot().process = getpid();
-}
+InOperator::InOperator(const OperatorCall& call) : before_(slot().get()) { slot().set(call); }
 
 InOperator::~InOperator() {
-  if (getpid() != slot().process) end_copy(slot().get());
   const std::string changed = surroundings_.restore();
   if (!changed.empty()) name_change(slot().get(), changed);
   slot().set(before_);

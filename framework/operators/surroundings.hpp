@@ -27,7 +27,7 @@ class Surroundings {
   bool same_locale() const;
   std::string put_back() const;
 
-  std::uint32_t vector_control_, scalar_control_;
+  std::uint32_t arithmetic_control_;
   locale_t thread_locale_;
 };
 

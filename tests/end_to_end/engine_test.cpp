@@ -4,6 +4,7 @@
 
 #include "engine/run.hpp"
 #include "support/experiments.hpp"
+#include "support/islands.hpp"
 #include "support/lives.hpp"
 #include "support/messages.hpp"
 #include "support/program.hpp"
@@ -18,15 +19,15 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
 /// Advances a run to its end. Returns the numbers of the generations that it told of.
-std::vector<std::uint32_t> advanced(Run& run, std::atomic<bool>& stop, std::uint32_t stop_in = ~0u) {
+std::vector<std::uint32_t> advanced(evodevo::Run& run, std::atomic<bool>& stop, std::uint32_t stop_in = ~0u) {
   std::vector<std::uint32_t> told;
-  Observer observer;
-  observer.generation_done = [&](const Summary& summary) {
+  run.observe({.generation_done = [&](std::int64_t, const Summary& summary) {
     told.push_back(summary.generation);
     if (summary.generation == stop_in) stop = true;
-  };
-  while (run.advance(stop, observer)) {
+  }});
+  while (run.advance()) {
   }
+  run.observe({});
   return told;
 }
 
@@ -55,14 +56,14 @@ TEST(Engine, ARunThatItsTokenStopsAndThatIsOpenedAgainIsThatOfTheCommand) {
 
   Heard heard;
   std::atomic<bool> stop = false;
-  const RunSpec spec{.folder = scratch / "engine"};
+  const RunSpec spec{.folder = scratch / "engine", .stop = &stop};
   {
-    auto run = evodevo::Run::begin(read_experiment({file.string(), testing::overrides(values)}), spec, heard.events());
+    auto run = evodevo::Run::begin(read_islands({file.string(), testing::overrides(values)}), spec, heard.events());
     EXPECT_THAT(advanced(run, stop, 0), ::testing::ElementsAre(0));
-    EXPECT_FALSE(run.advance(stop));
+    EXPECT_FALSE(run.advance());
     EXPECT_FALSE(run.is_finished());
     EXPECT_GT(run.pause().whole, 0);
-    EXPECT_EQ(run.archive().generations().size(), 1u);
+    EXPECT_EQ(run.archives().front().generations().size(), 1u);
     EXPECT_FALSE(run.is_complete());
     EXPECT_THAT(testing::refusal<ArchiveError>([&] { evodevo::Run::open(spec); }),
                 HasSubstr(spec.folder.string() + ": another"))
@@ -74,9 +75,11 @@ TEST(Engine, ARunThatItsTokenStopsAndThatIsOpenedAgainIsThatOfTheCommand) {
     auto run = evodevo::Run::open(spec, heard.events());
     EXPECT_THAT(advanced(run, stop), ::testing::ElementsAre(1, 2));
     EXPECT_TRUE(run.is_finished());
-    const std::vector<Verification> verified = run.finish();
+    const std::vector<VerifiedBest> verified = run.finish();
     ASSERT_EQ(verified.size(), 1u);
-    EXPECT_EQ(verified.front().individual, run.archive().best(1).front());
+    EXPECT_EQ(verified.front().island, 0);
+    ASSERT_EQ(verified.front().verifications.size(), 1u);
+    EXPECT_EQ(verified.front().verifications.front().individual, run.archives().front().best(1).front());
     EXPECT_TRUE(run.is_complete());
   }
   EXPECT_THAT(heard.warnings, ::testing::IsEmpty());
@@ -90,42 +93,67 @@ TEST(Engine, ARunThatItsTokenStopsAndThatIsOpenedAgainIsThatOfTheCommand) {
   EXPECT_TRUE(complete.is_complete());
 }
 
-TEST(Engine, ManyRunsLiveInOneProcessAndStopOneByOne) {
+TEST(Engine, IslandsThatAreStoppedAndOpenedAgainAreThoseOfTheCommandAndMakeTheirGenerationsTogether) {
   const testing::Scratch scratch;
-  auto first = evodevo::Run::begin(testing::small(), {.folder = scratch / "first"});
-  auto second = evodevo::Run::begin(testing::small(), {.folder = scratch / "second"});
-  std::atomic<bool> stop = false, never = false;
-  EXPECT_TRUE(first.advance(stop));
-  stop = true;
-  EXPECT_FALSE(first.advance(stop));
-  while (second.advance(never)) {
+  const std::string file = scratch.write("islands.toml", testing::small_islands);
+  testing::said({"run", file, "--out", (scratch / "command").string(), "--no-report"});
+  std::atomic<bool> stop = false;
+  const RunSpec spec{.folder = scratch / "engine", .stop = &stop};
+  {
+    auto run = evodevo::Run::begin(read_islands({file, {}}), spec);
+    EXPECT_THAT(advanced(run, stop, 1), ::testing::ElementsAre(0, 0, 0, 1, 1, 1));
+    run.pause();
+    EXPECT_THAT(next_generations(run.archives()), ::testing::ElementsAre(2, 2, 2));
+    EXPECT_FALSE(run.is_finished());
   }
   stop = false;
-  while (first.advance(stop)) {
+  auto run = evodevo::Run::open(spec);
+  EXPECT_THAT(advanced(run, stop), ::testing::SizeIs(15));
+  std::size_t verified = 0;
+  for (const VerifiedBest& best : run.finish()) {
+    EXPECT_GT(best.island, 0);
+    verified += best.verifications.size();
+  }
+  EXPECT_EQ(verified, static_cast<std::size_t>(run.experiments().front().verify));
+  EXPECT_TRUE(run.is_complete());
+  testing::expect_same_islands(scratch / "command", spec.folder);
+}
+
+TEST(Engine, ManyRunsLiveInOneProcessAndStopOneByOne) {
+  const testing::Scratch scratch;
+  std::atomic<bool> stop = false;
+  auto first = evodevo::Run::begin(testing::alone(testing::small()), {.folder = scratch / "first", .stop = &stop});
+  auto second = evodevo::Run::begin(testing::alone(testing::small()), {.folder = scratch / "second"});
+  EXPECT_TRUE(first.advance());
+  stop = true;
+  EXPECT_FALSE(first.advance());
+  while (second.advance()) {
+  }
+  stop = false;
+  while (first.advance()) {
   }
   first.finish();
   second.finish();
-  testing::expect_same_runs(first.archive(), second.archive());
+  testing::expect_same_runs(first.archives().front(), second.archives().front());
 }
 
 TEST(Engine, ARunGoesOnAfterAPauseWithItsTimesAddedUp) {
   const testing::Scratch scratch;
-  std::atomic<bool> stop = false;
-  auto run = evodevo::Run::begin(testing::small(), {.folder = scratch / "run"});
+  auto run = evodevo::Run::begin(testing::alone(testing::small()), {.folder = scratch / "run"});
   double sum = 0;
   do {
     sum += run.pause().whole;
-  } while (run.advance(stop));
+  } while (run.advance());
   sum += run.pause().whole;
-  EXPECT_NEAR(recorded_time_spent(run.archive())->whole, sum, 1e-9 + 1e-6 * sum);
-  testing::expect_same_runs(run.archive(), testing::FinishedRun(testing::small()).archive);
+  EXPECT_NEAR(recorded_time_spent(run.archives().front())->whole, sum, 1e-9 + 1e-6 * sum);
+  testing::expect_same_runs(run.archives().front(), testing::FinishedRun(testing::small()).archive);
 }
 
 TEST(Engine, TellsWarningsAndRefusesBeforeAnythingIsWritten) {
   const testing::Scratch scratch;
   Heard heard;
   const auto begin = [&](const char* value) {
-    evodevo::Run::begin(testing::small({value}), {.folder = scratch / "run"}, heard.events());
+    evodevo::Run::begin(testing::alone(testing::small({value})), {.folder = scratch / "run"}, heard.events());
   };
   const std::string start = "experiment.start='" + (scratch / "nowhere").string() + "'";
   EXPECT_THAT(testing::refusal<InputError>([&] { begin(start.c_str()); }), HasSubstr("nowhere"));
@@ -133,7 +161,7 @@ TEST(Engine, TellsWarningsAndRefusesBeforeAnythingIsWritten) {
   begin("experiment.random_individuals=6");
   EXPECT_THAT(heard.warnings, ::testing::Contains(HasSubstr("experiment.random_individuals = 6")));
   EXPECT_TRUE(fs::exists(scratch / "run"));
-  const Experiment other = testing::small();
+  const auto other = testing::alone(testing::small());
   EXPECT_THAT(testing::refusal<ArchiveError>([&] { evodevo::Run::open({.folder = scratch / "run"}, {}, &other); }),
               HasSubstr("random_individuals = 1"));
 }

@@ -38,10 +38,10 @@ TEST(LostDevice, SaysWhatIsCompleteAndARunThatGoesOnEndsAsIfItHadNotBeen) {
   const testing::Scratch scratch;
   const Experiment experiment = testing::small();
   const auto failure = [&](const std::string& name, std::size_t generations) {
-    evodevo::Run run(testing::small(), std::make_unique<Breaking>(experiment, generations),
-                     Archive::create(scratch / name, experiment, "test"));
+    evodevo::Run run = testing::run_of(testing::small(), std::make_unique<Breaking>(experiment, generations),
+                                       Archive::create(scratch / name, experiment, "test"));
     const std::string said = testing::refusal<std::runtime_error>([&] { evolve_and_report(run); });
-    EXPECT_EQ(run.archive().generations().size(), generations);
+    EXPECT_EQ(run.archives().front().generations().size(), generations);
     return said;
   };
   const std::string device = "CUDA: simulating on the GPU failed\n";
@@ -49,8 +49,8 @@ TEST(LostDevice, SaysWhatIsCompleteAndARunThatGoesOnEndsAsIfItHadNotBeen) {
   const auto folder = scratch / "broken";
   EXPECT_THAT(failure("broken", 3), testing::at_place(device, "generation 2", " resume " + folder.string()));
   {
-    evodevo::Run run(testing::small(), std::make_unique<testing::AlteredSimulator>(experiment),
-                     Archive::resume(folder));
+    evodevo::Run run = testing::run_of(testing::small(), std::make_unique<testing::AlteredSimulator>(experiment),
+                                       Archive::resume(folder));
     EXPECT_EQ(evolve_and_report(run), 0);
   }
   testing::expect_same_runs(Archive::read(folder), testing::FinishedRun(testing::small()).archive);
@@ -58,17 +58,16 @@ TEST(LostDevice, SaysWhatIsCompleteAndARunThatGoesOnEndsAsIfItHadNotBeen) {
 
 TEST(LostDevice, ARunThatIsHeldGoesOnFromTheGenerationBefore) {
   const testing::Scratch scratch;
-  evodevo::Run run(testing::small(), std::make_unique<Breaking>(testing::small(), 2),
-                   Archive::create(scratch / "run", testing::small(), "test"));
-  const std::atomic<bool> stop = false;
-  EXPECT_TRUE(run.advance(stop));
-  EXPECT_TRUE(run.advance(stop));
-  EXPECT_THROW(run.advance(stop), std::runtime_error);
-  EXPECT_EQ(run.archive().generations().size(), 2u);
-  while (run.advance(stop)) {
+  evodevo::Run run = testing::run_of(testing::small(), std::make_unique<Breaking>(testing::small(), 2),
+                                     Archive::create(scratch / "run", testing::small(), "test"));
+  EXPECT_TRUE(run.advance());
+  EXPECT_TRUE(run.advance());
+  EXPECT_THROW(run.advance(), std::runtime_error);
+  EXPECT_EQ(run.archives().front().generations().size(), 2u);
+  while (run.advance()) {
   }
   run.pause();
-  testing::expect_same_runs(run.archive(), testing::FinishedRun(testing::small()).archive);
+  testing::expect_same_runs(run.archives().front(), testing::FinishedRun(testing::small()).archive);
 }
 
 /// Bone is so stiff that whole voxels of it diverge at 0.5 ms. Before such a body is flagged, it moves farther than any

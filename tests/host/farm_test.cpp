@@ -217,7 +217,7 @@ TEST_F(FarmRuns, EndWithTheNameOfARankWhoseJobFails) {
 TEST_F(FarmRuns, ForgiveSilenceInWhichTheLeaderDoesNotListen) {
   LocalRanks ranks(2, many, {});
   int generations = 0;
-  const auto pause = [&](const Summary&) {
+  const auto pause = [&](std::int64_t, const Summary&) {
     std::this_thread::sleep_for(std::chrono::seconds(4));
     stop_ = ++generations == 2;
   };

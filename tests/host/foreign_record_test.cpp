@@ -35,7 +35,7 @@ class ForeignRecord : public ::testing::Test {
     Archive archive = Archive::create(original_, experiment, simulator->device());
     std::atomic<bool> stop = false;
     evolve(experiment, *simulator, archive, stop,
-           Observer{.generation_done = [&](const Summary& summary) { stop = summary.generation == 1; }});
+           Observer{.generation_done = [&](std::int64_t, const Summary& summary) { stop = summary.generation == 1; }});
     const ArchivedIndividual best = archive.known_individual(archive.best(1).front());
     archive.add_verifications({{best.id, best.result.objectives[0], {{"again", Status::ok, "", 0.3}}}});
     archive.set_signal({{"champion", "score", "record", "value", 0.3, {}, {}, 1}}, 1);

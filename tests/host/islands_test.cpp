@@ -72,8 +72,8 @@ class Islands : public ::testing::Test {
   std::vector<Experiment> read(std::vector<Override> overrides = {}) const {
     return testing::read_islands(scratch_, testing::small_islands, std::move(overrides));
   }
-  void straight(const std::vector<Experiment>& islands) const {
-    testing::evolve_islands(islands, scratch_ / "straight", 1);
+  void straight(std::vector<Experiment> islands) const {
+    testing::evolve_islands(std::move(islands), scratch_ / "straight", 1);
   }
   Archive archive(std::int64_t island) const { return Archive::read(island_folder(scratch_ / "straight", island)); }
 
@@ -134,28 +134,26 @@ TEST_F(IslandTables, ThatCannotWorkAreRefused) {
 }
 
 TEST_F(Islands, GoOnFromEveryInterruption) {
-  const std::vector<Experiment> islands = read();
-  straight(islands);
+  straight(read());
   for (std::int64_t island = 1; island <= 3; ++island)
     for (std::uint32_t generation = 0; generation < 7; ++generation) {
       const fs::path folder = scratch_ / (std::to_string(island) + "." + std::to_string(generation));
-      testing::evolve_islands(islands, folder, 2, testing::Interruption{island, generation});
-      testing::evolve_islands(islands, folder, 1);
+      testing::evolve_islands(read(), folder, 2, testing::Interruption{island, generation});
+      testing::evolve_islands(read(), folder, 1);
       testing::expect_same_islands(scratch_ / "straight", folder);
     }
 }
 
 TEST_F(Islands, GoOnWhereverEachOfThemStands) {
-  const std::vector<Experiment> islands = read();
-  straight(islands);
+  straight(read());
   EXPECT_THAT(archive(1).emigrants_to(2, 0), ::testing::SizeIs(3)) << "after generations 1, 3 and 5";
-  testing::evolve_islands(islands, scratch_ / "early", 1, testing::Interruption{1, 1});
+  testing::evolve_islands(read(), scratch_ / "early", 1, testing::Interruption{1, 1});
   const fs::path mixed = scratch_ / "mixed";
   fs::create_directory(mixed);
   for (const auto& [island, from] : {std::pair{1, "early"}, {2, "straight"}, {3, "early"}})
     fs::copy(island_folder(scratch_ / from, island), island_folder(mixed, island));
   EXPECT_LT(Archive::read(island_folder(mixed, 1)).generations().size(), 7u);
-  testing::evolve_islands(islands, mixed, 2);
+  testing::evolve_islands(read(), mixed, 2);
   testing::expect_same_islands(scratch_ / "straight", mixed);
 }
 

@@ -336,8 +336,9 @@ class GoneOn : public ::testing::Test {
     {
       Archive archive = Archive::create(folder_, experiment_, "here");
       std::atomic<bool> stop = false;
-      evolve(experiment_, here, archive, stop,
-             {.generation_done = [&](const Summary& summary) { stop = summary.generation + 1 == first_half; }});
+      evolve(experiment_, here, archive, stop, {.generation_done = [&](std::int64_t, const Summary& summary) {
+               stop = summary.generation + 1 == first_half;
+             }});
     }
     Elsewhere there(experiment_, device);
     Archive archive = Archive::resume(folder_);

@@ -121,11 +121,11 @@ TEST_F(UnsteadyRuns, ThatLoseTheDeviceGoOnFromTheLastGeneration) {
 
 TEST(UnsteadyIslands, GiveTheResultsOfACalmDevice) {
   const testing::Scratch scratch;
-  const std::vector<Experiment> islands = testing::read_islands(scratch, testing::small_islands);
-  testing::evolve_islands(islands, scratch / "calm", 1);
+  const auto islands = [&] { return testing::read_islands(scratch, testing::small_islands); };
+  testing::evolve_islands(islands(), scratch / "calm", 1);
   for (const std::uint64_t seed : {1, 2, 3}) {
-    UnsteadyDevice device(islands.front(), seed);
-    testing::evolve_islands(islands, scratch / std::to_string(seed), device);
+    auto device = std::make_unique<UnsteadyDevice>(islands().front(), seed);
+    testing::evolve_islands(islands(), scratch / std::to_string(seed), std::move(device));
     testing::expect_same_islands(scratch / "calm", scratch / std::to_string(seed));
   }
 }

@@ -31,13 +31,6 @@ int deeper(int depth) {
   return endless ? deeper(depth + 1) + room[0] : depth;
 }
 
-/// Forks at the first call in a process and in all that descend from it. Returns what fork() does, or -1 at later
-/// calls.
-pid_t fork_once() {
-  static bool forked = false;
-  return std::exchange(forked, true) ? -1 : fork();
-}
-
 /// Prints a line for which tests wait, and never returns.
 [[noreturn]] void hang() {
   constexpr std::string_view text = "it hangs\n";
@@ -78,9 +71,6 @@ struct Mutation final : Told<evodevo::Mutation> {
     at_end.crashes = how == "crash-at-end";
     if (how == "hang") hang();
     if (how == "exit") std::exit(0);
-    if (how == "exit-at-once") _exit(0);
-    if (how == "exit-by-standard") std::_Exit(0);
-    if (how == "quick-exit") std::quick_exit(0);
     if (how == "overflow") deeper(0);
     if (how == "round") std::fesetround(FE_UPWARD);
 #if defined(__SSE__)
@@ -90,8 +80,6 @@ struct Mutation final : Told<evodevo::Mutation> {
     static const OtherLocale other;
     if (how == "thread-locale") uselocale(other.handle);
     if (how == "global-locale") std::locale::global(std::locale("C.UTF-8"));
-    if (how == "fork" && fork_once() == 0) return;
-    if (how == "fork-and-throw" && fork_once() == 0) throw std::runtime_error("in the child");
   }
 };
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/run.hpp"
 #include "evolution/islands/island_folders.hpp"
-#include "evolution/islands/island_runs.hpp"
 #include "support/changed.hpp"
 #include "support/experiments.hpp"
 #include "support/runs.hpp"
@@ -49,32 +49,28 @@ struct Interruption {
 };
 
 /// Begins or continues the run with these islands in a folder.
-inline void evolve_islands(const std::vector<Experiment>& experiments, const std::filesystem::path& folder,
-                           Simulator& simulator, std::optional<Interruption> interruption = std::nullopt) {
+inline void evolve_islands(std::vector<Experiment> experiments, const std::filesystem::path& folder,
+                           std::unique_ptr<Simulator> simulator,
+                           std::optional<Interruption> interruption = std::nullopt) {
   std::vector<Archive> archives;
-  std::vector<std::unique_ptr<LocalEvaluator>> evaluators;
-  std::vector<IslandRun> runs;
-  std::atomic<bool> stop = false;
   for (const Experiment& island : experiments) {
     const std::filesystem::path place = island_folder(folder, island.island);
     archives.push_back(std::filesystem::exists(place) ? Archive::resume(place)
-                                                      : Archive::create(place, island, simulator.device()));
+                                                      : Archive::create(place, island, simulator->device()));
   }
-  for (std::size_t i = 0; i < experiments.size(); ++i) {
-    evaluators.push_back(std::make_unique<LocalEvaluator>(experiments[i], simulator));
-    Observer observer;
-    observer.generation_done = [&, number = experiments[i].island](const Summary& summary) {
-      if (interruption && interruption->island == number && interruption->generation == summary.generation) stop = true;
-    };
-    runs.push_back({experiments[i], archives[i], *evaluators.back(), observer});
+  std::atomic<bool> stop = false;
+  evodevo::Run run(std::move(experiments), std::move(simulator), std::move(archives), &stop);
+  run.observe({.generation_done = [&](std::int64_t island, const Summary& summary) {
+    if (interruption && interruption->island == island && interruption->generation == summary.generation) stop = true;
+  }});
+  while (run.advance()) {
   }
-  LocalExchange exchange;
-  evolve(runs, exchange, next_generations(archives), stop);
+  run.pause();
 }
-inline void evolve_islands(const std::vector<Experiment>& experiments, const std::filesystem::path& folder, int threads,
+inline void evolve_islands(std::vector<Experiment> experiments, const std::filesystem::path& folder, int threads,
                            std::optional<Interruption> interruption = std::nullopt) {
-  const auto simulator = make_cpu_simulator(experiments.front().scene, experiments.front().stepping, threads);
-  evolve_islands(experiments, folder, *simulator, interruption);
+  auto simulator = make_cpu_simulator(experiments.front().scene, experiments.front().stepping, threads);
+  evolve_islands(std::move(experiments), folder, std::move(simulator), interruption);
 }
 
 /// Expects that the islands of both runs are the same, with their migrants.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cpu/simulator.hpp"
+#include "engine/run.hpp"
 #include "evolution/archive/archive.hpp"
 #include "evolution/breeding.hpp"
 #include "evolution/evolution.hpp"
@@ -85,9 +86,23 @@ class AlteredSimulator : public Simulator {
 inline TimeSpent evolve_to(std::size_t generations, const Experiment& experiment, Archive& archive, int threads = 1) {
   std::atomic<bool> stop = false;
   Observer observer;
-  observer.generation_done = [&](const Summary& summary) { stop = summary.generation + 1 >= generations; };
+  observer.generation_done = [&](std::int64_t, const Summary& summary) {
+    stop = summary.generation + 1 >= generations;
+  };
   const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, threads);
   return evolve(experiment, *simulator, archive, stop, observer);
+}
+
+template <class Item>
+std::vector<Item> alone(Item item) {
+  std::vector<Item> items;
+  items.push_back(std::move(item));
+  return items;
+}
+
+/// A run with one population, of its parts.
+inline evodevo::Run run_of(Experiment experiment, std::unique_ptr<Simulator> simulator, Archive archive) {
+  return {alone(std::move(experiment)), std::move(simulator), alone(std::move(archive))};
 }
 
 /// A run that is finished.

@@ -17,7 +17,6 @@ GenerationLog::GenerationLog(const std::filesystem::path& file) : file_(file), s
 }
 
 void GenerationLog::add(const Summary& summary, std::int64_t island) {
-  const std::lock_guard lock(mutex_);
   if (failed_) return;
   nlohmann::ordered_json line = summary_json(summary);
   if (island > 0) line["island"] = island;

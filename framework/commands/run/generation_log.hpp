@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <mutex>
 
 #include "evolution/population.hpp"
 
@@ -16,12 +15,11 @@ class GenerationLog {
   /// Throws UsageError if the file cannot be opened.
   explicit GenerationLog(const std::filesystem::path& file);
 
-  /// Adds a line, which also names the island, numbered from 1, unless it is 0. Several threads may call it. If it
-  /// cannot be written, the log ends there: a warning says so once, and the run goes on.
+  /// Adds a line, which also names the island, numbered from 1, unless it is 0. If it cannot be written, the log ends
+  /// there: a warning says so once, and the run goes on.
   void add(const Summary& summary, std::int64_t island = 0);
 
  private:
-  std::mutex mutex_;
   std::filesystem::path file_;
   std::ofstream stream_;
   bool failed_ = false;

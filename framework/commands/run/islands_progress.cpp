@@ -11,17 +11,15 @@
 
 namespace evodevo {
 
-IslandsProgress::IslandsProgress(const Experiment& island, std::int64_t evaluations,
-                                 const std::vector<std::vector<Summary>>& past, const std::atomic<bool>& stop,
-                                 bool is_live)
-    : island_(island), evaluations_(evaluations), stop_(stop), is_live_(is_live), last_(past.size()) {
-  for (std::size_t i = 0; i < past.size(); ++i)
-    if (!past[i].empty()) last_[i] = past[i].back();
+IslandsProgress::IslandsProgress(const Run& run, const std::atomic<bool>& stop, bool is_live)
+    : island_(run.experiments().front()), stop_(stop), is_live_(is_live), last_(run.archives().size()) {
+  for (const Experiment& island : run.experiments()) evaluations_ += island.evaluations;
+  for (std::size_t i = 0; i < last_.size(); ++i)
+    if (const std::vector<Summary> past = run.archives()[i].generations(); !past.empty()) last_[i] = past.back();
   before_ = evaluations_done();
 }
 
 void IslandsProgress::generation_done(std::int64_t island, const Summary& summary) {
-  const std::lock_guard lock(mutex_);
   last_[static_cast<std::size_t>(island - 1)] = summary;
   spring_evaluations_ += summary.spring_evaluations;
   ++generations_;
@@ -32,13 +30,8 @@ void IslandsProgress::generation_done(std::int64_t island, const Summary& summar
 }
 
 void IslandsProgress::finish() {
-  const std::lock_guard lock(mutex_);
   if (!is_live_) return;
   live_line_.finish([this](std::size_t columns) { return line(columns); });
-}
-
-double IslandsProgress::seconds() const {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
 }
 
 std::int64_t IslandsProgress::evaluations_done() const {

@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "base/text.hpp"
+#include "commands/run/islands_progress.hpp"
 #include "commands/shell/output/notices.hpp"
 #include "commands/shell/output/output_of_thread.hpp"
 
@@ -43,13 +44,19 @@ std::string duration_text(double seconds) {
   return fmt::format("{} h {} min", whole / 3600, whole % 3600 / 60);
 }
 
-ProgressDisplay::ProgressDisplay(const Experiment& experiment, const std::vector<Summary>& past,
-                                 const std::atomic<bool>& stop, const Farm* farm)
-    : experiment_(experiment),
-      stop_(stop),
-      farm_(farm),
-      live_(!farm && prints_on_terminal() && verbosity() != Verbosity::quiet),
-      start_(std::chrono::steady_clock::now()) {
+double ProgressDisplay::seconds() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+std::unique_ptr<ProgressDisplay> progress_of(const Run& run, const std::atomic<bool>& stop, bool has_ranks) {
+  const bool is_live = !has_ranks && prints_on_terminal() && verbosity() != Verbosity::quiet;
+  if (run.has_islands()) return std::make_unique<IslandsProgress>(run, stop, is_live);
+  return std::make_unique<PopulationProgress>(run, stop, is_live);
+}
+
+PopulationProgress::PopulationProgress(const Run& run, const std::atomic<bool>& stop, bool is_live)
+    : run_(run), experiment_(run.experiments().front()), stop_(stop), live_(is_live) {
+  const std::vector<Summary> past = run.archives().front().generations();
   if (past.empty()) return;
   last_ = past.back();
   evaluations_before_ = last_.evaluations;
@@ -62,16 +69,7 @@ ProgressDisplay::ProgressDisplay(const Experiment& experiment, const std::vector
   }
 }
 
-Observer ProgressDisplay::observer() {
-  return {[this](const Summary& summary) { generation_done(summary); },
-          [this](double done) { generation_progress(done); }};
-}
-
-double ProgressDisplay::seconds() const {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-}
-
-double ProgressDisplay::seconds_left(double evaluations) const {
+double PopulationProgress::seconds_left(double evaluations) const {
   const double done = evaluations - static_cast<double>(evaluations_before_);
   double left = seconds() / done * (static_cast<double>(experiment_.evaluations) - evaluations);
   if (experiment_.hours > 0)
@@ -82,7 +80,7 @@ double ProgressDisplay::seconds_left(double evaluations) const {
   return std::min(left, seconds() / springs * std::max(0.0, springs_left));
 }
 
-std::vector<LinePart> ProgressDisplay::parts(double evaluations) const {
+std::vector<LinePart> PopulationProgress::parts(double evaluations) const {
   const double rate = (evaluations - static_cast<double>(evaluations_before_)) / seconds();
   const auto percent = [&](std::int64_t count) {
     return last_.evaluations > 0 ? 100.0 * static_cast<double>(count) / static_cast<double>(last_.evaluations) : 0.0;
@@ -96,25 +94,25 @@ std::vector<LinePart> ProgressDisplay::parts(double evaluations) const {
   add(3, "median " + optional_text(last_.median) + of);
   add(5, fmt::format("diverged {:.1f} %", percent(diverged_)));
   if (experiment_.verify_front != VerifyFront::off) add(5, fmt::format("refused {:.1f} %", percent(refused_)));
-  if (farm_) add(5, ranks_text(farm_->shares(), seconds()));
+  if (const std::vector<Share> shares = run_.shares(); !shares.empty()) add(5, ranks_text(shares, seconds()));
   if (rate > 0) add(4, fmt::format("{:.3g} evaluations/s", rate));
   if (rate > 0) add(2, duration_text(seconds_left(evaluations)) + " left");
   if (stop_) add(0, "(stopping; Ctrl-C again: at once)");
   return parts;
 }
 
-std::string ProgressDisplay::line(std::size_t columns) const {
+std::string PopulationProgress::line(std::size_t columns) const {
   std::string line;
   for (const std::string& part : fitting_parts(parts(evaluations_), columns))
     line += (line.empty() ? "" : "  ") + (live_ && part.starts_with("best ") ? bold(part) : part);
   return line;
 }
 
-void ProgressDisplay::show_live() {
+void PopulationProgress::show_live() {
   live_line_.show([this](std::size_t columns) { return line(columns); });
 }
 
-void ProgressDisplay::generation_done(const Summary& summary) {
+void PopulationProgress::generation_done(std::int64_t, const Summary& summary) {
   last_ = summary;
   diverged_ += summary.diverged;
   refused_ += summary.refused();
@@ -126,7 +124,7 @@ void ProgressDisplay::generation_done(const Summary& summary) {
     remarks() << line(std::string::npos) << std::endl;
 }
 
-void ProgressDisplay::generation_progress(double done) {
+void PopulationProgress::generation_progress(double done) {
   if (!live_) return;
   const std::uint32_t generation = last_.evaluations > 0 ? last_.generation + 1 : 0;
   const auto batch = std::min(experiment_.births(generation), experiment_.evaluations - last_.evaluations);
@@ -134,7 +132,7 @@ void ProgressDisplay::generation_progress(double done) {
   show_live();
 }
 
-void ProgressDisplay::finish() {
+void PopulationProgress::finish() {
   if (!live_) return;
   live_line_.finish([this](std::size_t columns) { return line(columns); });
 }

@@ -28,7 +28,8 @@ RunSpec given_spec(const Given& given, const fs::path& folder) {
           .plugin_path = given_plugin_path(given),
           .machine = given_machine(given),
           .gpus = given_gpus(given),
-          .other_versions = given.contains("allow-other-versions")};
+          .other_versions = given.contains("allow-other-versions"),
+          .mixed = given.contains("mixed")};
 }
 
 RunEvents printed_events() {

@@ -22,7 +22,7 @@ std::string escaped(std::string text) {
   return text.starts_with('.') ? "\\&" + text : text;
 }
 
-std::string bold(const std::string& text) { return "\\fB" + escaped(text) + "\\fR"; }
+std::string in_bold(const std::string& text) { return "\\fB" + escaped(text) + "\\fR"; }
 
 std::string section(std::string title) {
   std::transform(title.begin(), title.end(), title.begin(), [](unsigned char c) { return std::toupper(c); });
@@ -45,7 +45,7 @@ std::string options_items(const Options& options) {
   std::string text;
   for (const auto& option : options.options()) {
     const std::string value = value_name_of(*option);
-    text += item(bold("--" + option->long_name()) + (value.empty() ? "" : " \\fI" + escaped(value) + "\\fR"),
+    text += item(in_bold("--" + option->long_name()) + (value.empty() ? "" : " \\fI" + escaped(value) + "\\fR"),
                  option->description());
   }
   return text;
@@ -66,7 +66,7 @@ std::string topic_section(const Topic& topic) {
   std::replace(title.begin(), title.end(), '-', ' ');
   std::string text = section(title) + escaped(with_full_stop(topic.summary)) + "\n";
   for (const std::string& lines : topic.text) text += paragraph(lines);
-  for (const Definition& definition : topic.definitions) text += item(bold(definition.term), definition.text);
+  for (const Definition& definition : topic.definitions) text += item(in_bold(definition.term), definition.text);
   std::string example = topic.example;
   if (!example.empty()) example.pop_back();  // removes the newline at the end
   return example.empty() ? text : text + verbatim(example);
@@ -79,7 +79,7 @@ std::string manual_page(std::span<const Command> commands) {
   page += section("Name") + "evodevo \\- evolves soft robots whose bodies develop during their lives\n";
   page += section("Synopsis") + ".nf\n";
   for (const Command& command : commands)
-    page += bold("evodevo " + command.name) + escaped(usage_of(command).substr(command.name.size())) + "\n";
+    page += in_bold("evodevo " + command.name) + escaped(usage_of(command).substr(command.name.size())) + "\n";
   page += ".fi\n";
   page += section("Commands");
   for (const Command& command : commands) page += command_text(command);

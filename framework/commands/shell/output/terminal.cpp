@@ -12,13 +12,13 @@
 namespace evodevo {
 namespace {
 
-constexpr std::size_t gap = 2;  // columns between two parts
+constexpr std::size_t between_parts = 2;  // columns between two parts
 
 /// The columns of a line.
 std::size_t columns_of(const std::vector<LinePart>& parts) {
   return std::accumulate(parts.begin(), parts.end(), std::size_t{0},
-                         [](std::size_t sum, const LinePart& part) { return sum + part.text.size() + gap; }) -
-         (parts.empty() ? 0 : gap);
+                         [](std::size_t sum, const LinePart& part) { return sum + part.text.size() + between_parts; }) -
+         (parts.empty() ? 0 : between_parts);
 }
 
 }  // namespace
@@ -53,7 +53,7 @@ std::vector<std::string> fitting_parts(std::vector<LinePart> parts, std::size_t 
   for (LinePart& part : parts) {
     if (used >= columns) break;
     fitting.push_back(part.text.substr(0, columns - used));
-    used += part.text.size() + gap;
+    used += part.text.size() + between_parts;
   }
   return fitting;
 }
