@@ -57,8 +57,6 @@ class Farm final : public Evaluator {
   Workers& workers() override { return worker_.workers(); }
   PhaseTimes phase_times() const override { return worker_.phase_times(); }
 
-  /// Ends the run for the other ranks, so that they do not wait for work while this one goes on alone.
-  void finish() { end_run(channel_); }
   /// What each rank has contributed so far.
   std::vector<Share> shares() const;
 

@@ -1,7 +1,7 @@
 #include "cluster/messages.hpp"
 
+#include "archive/schema.hpp"
 #include "cluster/wire.hpp"
-#include "evolution/archive/schema.hpp"
 
 namespace evodevo {
 

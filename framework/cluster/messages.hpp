@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
+#include "archive/population.hpp"
+#include "archive/provenance.hpp"
 #include "evolution/evaluator.hpp"
-#include "evolution/population.hpp"
-#include "evolution/provenance.hpp"
 
 namespace evodevo::message {
 

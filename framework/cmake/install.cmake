@@ -27,7 +27,7 @@ set(pages
   plugins/README.md=operators.md
   experiments/README.md=experiments.md
   framework/commands/README.md=commands.md
-  framework/evolution/archive/README.md=archive.md
+  framework/archive/README.md=archive.md
   kernels/README.md=simulation.md
   tools/python/README.md=python.md
   framework/sdk/README.md=plugins.md)

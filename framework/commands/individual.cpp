@@ -4,12 +4,12 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "archive/record_check.hpp"
 #include "base/genome_sections.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "commands/commands.hpp"
 #include "commands/shell/options.hpp"
-#include "evolution/record_check.hpp"
 #include "evolution/resimulation.hpp"
 #include "life/body_json.hpp"
 #include "report/genes_json.hpp"

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <iostream>
 
+#include "archive/island_folders.hpp"
 #include "base/output_file.hpp"
 #include "base/text.hpp"
 #include "commands/commands.hpp"
 #include "commands/shell/options.hpp"
 #include "commands/shell/output/notices.hpp"
-#include "evolution/islands/island_folders.hpp"
 #include "operators/loader.hpp"
 #include "report/camera.hpp"
 #include "report/page.hpp"

@@ -7,14 +7,15 @@
 #include <numeric>
 #include <set>
 
+#include "archive/archive.hpp"
+#include "archive/island_folders.hpp"
+#include "archive/recorded_experiment.hpp"
 #include "base/json_text.hpp"
+#include "base/statistics.hpp"
 #include "base/text.hpp"
 #include "commands/commands.hpp"
 #include "commands/shell/options.hpp"
 #include "commands/shell/output/notices.hpp"
-#include "evolution/archive/archive.hpp"
-#include "evolution/evolution.hpp"
-#include "evolution/islands/island_folders.hpp"
 #include "experiment/toml_reader.hpp"
 #include "report/diversity.hpp"
 #include "report/lineage.hpp"

@@ -4,12 +4,13 @@
 #include <cmath>
 #include <future>
 
+#include "archive/archive.hpp"
+#include "archive/recorded_experiment.hpp"
 #include "base/text.hpp"
 #include "conformance/conformance.hpp"
 #include "conformance/trials.hpp"
-#include "cpu/simulator.hpp"
-#include "evolution/archive/archive.hpp"
 #include "evolution/evolution.hpp"
+#include "experiment/device.hpp"
 #include "experiment/toml_reader.hpp"
 #include "operators/declarations.hpp"
 #include "operators/describe.hpp"
@@ -234,11 +235,12 @@ void instances(const Subject& subject, std::uint64_t seed) {
 /// Continues the run in the archive. If `stop_early`, stops after generation 1, the first one that is bred from
 /// parents.
 void live(const Experiment& experiment, Archive& archive, bool stop_early) {
-  const auto simulator =
-      make_cpu_simulator(experiment.scene, experiment.stepping, static_cast<int>(experiment.threads));
+  const auto simulator = make_simulator(experiment, experiment.stepping, Device::cpu);
   std::atomic<bool> stop = false;
   Observer observer;
-  observer.generation_done = [&](std::int64_t, const Summary& summary) { stop = stop_early && summary.generation == 1; };
+  observer.generation_done = [&](std::int64_t, const Summary& summary) {
+    stop = stop_early && summary.generation == 1;
+  };
   evolve(experiment, *simulator, archive, stop, observer);
 }
 

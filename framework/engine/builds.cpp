@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "evolution/provenance.hpp"
+#include "archive/provenance.hpp"
 
 namespace evodevo {
 namespace {

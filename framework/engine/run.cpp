@@ -2,16 +2,17 @@
 
 #include <algorithm>
 #include <mutex>
+#include <utility>
 
-#include "base/input_error.hpp"
+#include "archive/island_folders.hpp"
+#include "archive/record_check.hpp"
+#include "archive/recorded_experiment.hpp"
 #include "cluster/post.hpp"
 #include "cluster/ranks.hpp"
 #include "engine/builds.hpp"
 #include "evolution/first_robots.hpp"
 #include "evolution/founders.hpp"
-#include "evolution/islands/island_folders.hpp"
 #include "evolution/islands/migration.hpp"
-#include "evolution/record_check.hpp"
 #include "evolution/resimulation.hpp"
 #include "experiment/device.hpp"
 #include "threads/parallel.hpp"
@@ -72,7 +73,8 @@ struct Run::State {
   std::vector<std::uint32_t> next = {};  ///< generation of each island, where other ranks lead some of them
   std::atomic<bool> never = false;
   std::mutex telling = {};  ///< of what the observer is told
-  bool is_over = false;     ///< whether other ranks have been let go
+  bool is_over = false;     ///< whether no generation can be made any more
+  bool has_let_go = false;  ///< whether the other ranks have been told that there is no more work
 
   // while it evolves; the evaluators also in between, except those of groups
   std::unique_ptr<Exchange> between_islands = nullptr;  ///< in this process
@@ -93,7 +95,7 @@ struct Run::State {
   void open_simulator(const RunEvents& events);
   void warn_of_changes(const RunEvents& events) const;
   void make_evaluators(const RunEvents& events, bool is_record);
-  void create_archives();
+  void create_archives(const RunEvents& events);
   void begin_work();
   void call_groups();
   bool make_generation();
@@ -146,7 +148,7 @@ void Run::State::make_evaluators(const RunEvents& events, bool is_record) {
   });
 }
 
-void Run::State::create_archives() {
+void Run::State::create_archives(const RunEvents& events) {
   if (!has_islands()) {
     archives.push_back(Archive::create(spec.folder, experiments.front(), simulator->device(), spec.journal));
     return;
@@ -159,8 +161,8 @@ void Run::State::create_archives() {
       archives.push_back(Archive::create(own, island, simulator->device(), spec.journal));
       continue;
     }
-    auto [archive, recorded] = reopened(own, spec, {}, &island);
-    refuse_other_versions(recorded, archive);
+    auto [archive, recorded] = reopened(own, spec, events, &island);
+    if (!spec.other_versions) refuse_other_versions(recorded, archive);
     archives.push_back(std::move(archive));
   }
 }
@@ -188,7 +190,7 @@ Run Run::begin(std::vector<Experiment> experiments, RunSpec spec, const RunEvent
   state->open_simulator(events);
   state->make_evaluators(events, false);
   if (state->spec.folder.empty()) state->spec.folder = new_run_folder(first.name);
-  state->create_archives();
+  state->create_archives(events);
   return Run(std::move(state));
 }
 
@@ -197,9 +199,10 @@ Run Run::open(RunSpec spec, const RunEvents& events, const std::vector<Experimen
   const RunSpec& own = state->spec;
   const std::size_t count = island_folders(own.folder).size();
   if (expected && expected->size() != std::max<std::size_t>(1, count))
-    throw ArchiveError(own.folder.string() + ": has " + std::to_string(count) +
-                       " islands, but the experiment asks for " + std::to_string(expected->size()) +
-                       "; give the experiment of the run, or another --out");
+    throw ArchiveError(
+        own.folder.string() + ": has " + (count == 0 ? "one population" : std::to_string(count) + " islands") +
+        ", but the experiment asks for " + std::to_string(expected->size()) +
+        (expected->size() == 1 ? " population" : " islands") + "; give the experiment of the run, or another --out");
   std::vector<std::int64_t> islands;
   for (std::size_t i = 1; i <= count; ++i) islands.push_back(static_cast<std::int64_t>(i));
   state->open_archives(events, islands, expected);
@@ -221,11 +224,15 @@ const std::vector<Archive>& Run::archives() const { return state_->archives; }
 Simulator& Run::simulator() { return *state_->simulator; }
 std::vector<Share> Run::shares() const { return state_->farm ? state_->farm->shares() : std::vector<Share>(); }
 
-void Run::observe(Observer observer) { state_->observer = std::move(observer); }
+void Run::observe(Observer observer) {
+  const std::lock_guard lock(state_->telling);
+  state_->observer = std::move(observer);
+}
 
 bool Run::is_finished() const {
   const State& state = *state_;
   if (!state.evolutions.empty()) return std::ranges::all_of(state.evolutions, &Evolution::is_finished);
+  if (state.archives.size() < state.experiments.size()) return false;  // a group of ranks has failed
   for (std::size_t i = 0; i < state.archives.size(); ++i)
     if (!evodevo::is_finished(state.experiments[i], state.archives[i].generations())) return false;
   return true;
@@ -345,18 +352,22 @@ TimeSpent Run::State::end_work() {
   return sum;
 }
 
-/// On rank 0, waits until the other groups have ended, and opens the archives of all islands. Returns why one has
-/// failed.
+/// On rank 0, waits until the other groups have ended, and opens the archives of all islands. Returns why that failed.
 std::optional<std::string> Run::State::end_groups() {
   if (!post) return std::nullopt;
   std::optional<std::string> failure = post->others_done();
   evaluators.clear();
   post.reset();
   is_over = true;
-  end_run(*spec.ranks);
   archives.clear();
-  for (const Experiment& island : experiments)
-    archives.push_back(Archive::annotate(island_folder(spec.folder, island.island)));
+  try {
+    std::vector<Archive> all;
+    for (const Experiment& island : experiments)
+      all.push_back(Archive::annotate(island_folder(spec.folder, island.island)));
+    archives = std::move(all);
+  } catch (const std::exception& error) {
+    if (!failure) failure = error.what();
+  }
   return failure;
 }
 
@@ -367,20 +378,29 @@ bool Run::advance() {
     state.begin_work();
     return state.make_generation();
   } catch (...) {
-    // the next call goes on from the generations that are committed
     if (state.post) state.stop() = true;
     try {
-      state.end_work();
+      pause();
     } catch (const std::exception&) {  // a consequence of the first failure, which is the one to tell
     }
-    state.end_groups();
+    state.is_over = state.spec.ranks != nullptr;  // another rank may still be at work for the generation that failed
     throw;
   }
 }
 
 TimeSpent Run::pause() {
-  const TimeSpent time = state_->end_work();
-  if (const std::optional<std::string> failure = state_->end_groups()) throw std::runtime_error(*failure);
+  State& state = *state_;
+  TimeSpent time;
+  std::exception_ptr failure;
+  try {
+    time = state.end_work();
+  } catch (...) {
+    failure = std::current_exception();
+    if (state.post) state.stop() = true;
+  }
+  const std::optional<std::string> of_groups = state.end_groups();
+  if (failure) std::rethrow_exception(failure);
+  if (of_groups) throw std::runtime_error(*of_groups);
   return time;
 }
 
@@ -389,8 +409,8 @@ std::vector<VerifiedBest> Run::verify(std::size_t count) {
   State& state = *state_;
   std::vector<VerifiedBest> verified;
   if (!state.simulator) return verified;
-  if (state.farm) state.farm->finish();
-  state.is_over = state.is_over || state.farm;
+  if (state.spec.ranks && !std::exchange(state.has_let_go, true)) end_run(*state.spec.ranks);
+  state.is_over = state.has_let_go;
   std::vector<std::size_t> counts(state.archives.size());  // of an island, its own best come first among all
   for (const IslandIndividual& one : best_of_islands(state.archives, count)) ++counts[one.island];
   for (std::size_t i = 0; i < counts.size(); ++i)
@@ -408,11 +428,11 @@ std::vector<VerifiedBest> Run::finish() {
 
 /// Evolves the islands of a group other than that of rank 0.
 void Run::State::lead_group() {
+  observer.generation_done = [this](std::int64_t island, const Summary& summary) {
+    post->tell_generation(island, summary);
+  };
   try {
     begin_work();
-    observer.generation_done = [this](std::int64_t island, const Summary& summary) {
-      post->tell_generation(island, summary);
-    };
     while (make_generation()) {
     }
     end_work();

@@ -27,10 +27,10 @@ namespace evodevo {
 struct RunSpec {
   std::filesystem::path folder = {};                    ///< of the run; empty: begin() makes runs/NAME-N
   std::optional<Journal> journal = std::nullopt;        ///< of SQLite; nullopt: what the file system can do
-  std::vector<std::filesystem::path> plugin_path = {};  ///< of open(): more places to search for operators
-  std::vector<Override> machine = {};                   ///< of open(): values of keys of [simulation], such as threads
-  std::vector<int> gpus = {};                           ///< of open(): Experiment::gpus
-  bool other_versions = false;                          ///< of open(): whether operators may have other versions
+  std::vector<std::filesystem::path> plugin_path = {};  ///< of runs in the folder: more places for operators
+  std::vector<Override> machine = {};                   ///< of the same: values of keys of [simulation]
+  std::vector<int> gpus = {};                           ///< of the same: Experiment::gpus
+  bool other_versions = false;                          ///< of the same: whether operators may have other versions
   Channel* ranks = nullptr;  ///< the processes that work on the run, of which this is rank 0; null: this one alone
   bool mixed = false;        ///< whether ranks may differ in their devices and builds
   /// If another thread or a signal handler sets it, the run ends after the generation under way. A rank that fails
@@ -82,17 +82,18 @@ class Run {
   /// What each rank has contributed; empty for one process, and for islands.
   std::vector<Share> shares() const;
 
-  /// Lets the run call these functions from now on. It never calls two at once, but perhaps on a thread of its own.
+  /// Lets the run call these functions from now on. It never calls two at once, but, if ranks evolve islands, also on a
+  /// thread of its own until pause(). Of islands, it tells only what they have completed.
   void observe(Observer observer);
 
-  /// Whether the run has used up what the experiment allows.
+  /// Whether the run has used up what the experiment allows; between advance() and pause(), as far as this rank knows.
   bool is_finished() const;
   /// Whether there is nothing left to do: neither evolution nor verification; false between advance() and pause().
   bool is_complete() const;
   /// Makes the next generation, and commits it or begins to. Islands make theirs at the same time; those that are ahead
-  /// wait for the others. Returns false if the run is finished or RunSpec::stop is set; a generation that has begun is
-  /// completed. Throws what the device or an operator throws; then the run is as after the last generation that was
-  /// committed, from which the next call goes on, unless ranks evolve islands.
+  /// wait for the others. Returns false if the run, or the part of this rank, is finished or RunSpec::stop is set; a
+  /// generation that has begun is completed. Throws what the device or an operator throws; then the run is as after the
+  /// last generation that was committed, from which the next call goes on, unless it has ranks: those are let go.
   bool advance();
   /// Waits until all generations have been committed, and adds the time of this process to the run's record. Returns
   /// that time, summed over islands. If ranks evolve islands, waits until all have ended, and throws

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "evolution/population.hpp"
+#include "archive/population.hpp"
 
 namespace evodevo {
 

@@ -5,8 +5,8 @@
 #include <unordered_set>
 #include <vector>
 
-#include "evolution/population.hpp"
-#include "evolution/provenance.hpp"
+#include "archive/population.hpp"
+#include "archive/provenance.hpp"
 
 namespace evodevo {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "evolution/provenance.hpp"
+#include "archive/provenance.hpp"
 #include "life/evaluation.hpp"
 #include "life/verification/verification.hpp"
 

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "archive/archive.hpp"
+#include "archive/error.hpp"
 #include "base/genome_sections.hpp"
 #include "base/text.hpp"
-#include "evolution/archive/archive.hpp"
-#include "evolution/archive/error.hpp"
 #include "evolution/breeding.hpp"
 #include "experiment/config_errors.hpp"
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "evolution/population.hpp"
+#include "archive/population.hpp"
 
 namespace evodevo {
 

@@ -4,7 +4,7 @@
 #include <map>
 #include <vector>
 
-#include "evolution/archive/archive.hpp"
+#include "archive/archive.hpp"
 #include "evolution/evaluator.hpp"
 
 namespace evodevo {

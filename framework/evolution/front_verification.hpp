@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "archive/population.hpp"
 #include "evolution/evaluator.hpp"
-#include "evolution/population.hpp"
 
 namespace evodevo {
 

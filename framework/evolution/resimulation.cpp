@@ -4,8 +4,9 @@
 #include <iostream>
 #include <map>
 
+#include "archive/record_check.hpp"
+#include "archive/recorded_experiment.hpp"
 #include "base/text.hpp"
-#include "evolution/record_check.hpp"
 
 namespace evodevo {
 namespace {

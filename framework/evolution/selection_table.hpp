@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "evolution/population.hpp"
+#include "archive/population.hpp"
 
 namespace evodevo {
 

@@ -24,20 +24,20 @@ void warn_of_unused_gpu(const std::string& obstacle) {
 }  // namespace
 
 std::unique_ptr<Simulator> make_simulator(const Experiment& experiment) {
-  return make_simulator(experiment, experiment.stepping);
+  return make_simulator(experiment, experiment.stepping, experiment.device);
 }
 
-std::unique_ptr<Simulator> make_simulator(const Experiment& experiment, const Stepping& stepping) {
-  if (experiment.device != Device::cpu) {
+std::unique_ptr<Simulator> make_simulator(const Experiment& experiment, const Stepping& stepping, Device device) {
+  if (device != Device::cpu) {
 #ifdef EVODEVO_CUDA
     const std::string obstacle = why_cuda_is_unusable(experiment.gpus);
     if (obstacle.empty())
       return make_cuda_group(experiment.scene, stepping, static_cast<int>(experiment.threads), experiment.gpus);
-    if (experiment.device != Device::cuda) warn_of_unused_gpu(obstacle);
+    if (device != Device::cuda) warn_of_unused_gpu(obstacle);
 #else
     const std::string obstacle = "this evodevo was built without CUDA; build it where the CUDA toolkit is installed";
 #endif
-    if (experiment.device == Device::cuda)
+    if (device == Device::cuda)
       throw ConfigError(experiment.device_location + ": simulation.device = \"cuda\": " + obstacle +
                         ", or set simulation.device to \"cpu\"");
   }

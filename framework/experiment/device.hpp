@@ -13,8 +13,8 @@ namespace evodevo {
 /// Makes the simulator for the experiment's device and number of threads. On CUDA it uses the experiment's GPUs. Throws
 /// ConfigError if the experiment asks for CUDA and CUDA cannot be used.
 std::unique_ptr<Simulator> make_simulator(const Experiment& experiment);
-/// The same for steps by another method or in another precision.
-std::unique_ptr<Simulator> make_simulator(const Experiment& experiment, const Stepping& stepping);
+/// The same for steps by another method or in another precision, and on another device.
+std::unique_ptr<Simulator> make_simulator(const Experiment& experiment, const Stepping& stepping, Device device);
 
 /// Returns the numbers of the GPUs that an experiment on CUDA uses if it names none; none if CUDA cannot be used.
 std::vector<int> usable_gpus();

@@ -56,7 +56,7 @@ const char* lowest_of_stack();
 
 /// While this object exists, its thread counts as being in the code of an operator. The destructor restores those of
 /// the program's Surroundings that the code has changed. It warns of each such change on stderr, once for each
-/// operator. If the code has called fork() and returns in the child process as well, the destructor ends that process.
+/// operator.
 class InOperator {
  public:
   explicit InOperator(const OperatorCall& call);

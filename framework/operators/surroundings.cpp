@@ -20,7 +20,9 @@ constexpr std::uint32_t rounding = 0x6000, flushing = 0x8040;
 
 std::uint32_t arithmetic_control() { return _mm_getcsr() & ~flags; }
 void set_arithmetic_control(std::uint32_t control) {
-  std::fesetround(static_cast<int>((control & rounding) >> 3));  // of long double, too, which has a unit of its own
+  // these two also concern long double, which has a unit of its own
+  std::fesetround(static_cast<int>((control & rounding) >> 3));
+  fedisableexcept(FE_ALL_EXCEPT);
   _mm_setcsr((_mm_getcsr() & flags) | control);
 }
 #else
@@ -43,8 +45,7 @@ const Locale& own_locale() {
 
 }  // namespace
 
-Surroundings::Surroundings()
-    : arithmetic_control_(arithmetic_control()), thread_locale_(uselocale(nullptr)) {
+Surroundings::Surroundings() : arithmetic_control_(arithmetic_control()), thread_locale_(uselocale(nullptr)) {
   own_locale();
 }
 

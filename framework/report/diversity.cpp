@@ -5,7 +5,7 @@
 #include <numeric>
 #include <set>
 
-#include "evolution/evolution.hpp"
+#include "base/statistics.hpp"
 
 namespace evodevo {
 namespace {

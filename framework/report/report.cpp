@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <numeric>
 
+#include "archive/progress.hpp"
+#include "archive/record_check.hpp"
 #include "evolution/breeding.hpp"
-#include "evolution/evolution.hpp"
-#include "evolution/record_check.hpp"
 #include "evolution/resimulation.hpp"
 #include "life/body_building.hpp"
 #include "report/diversity.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "evolution/archive/archive.hpp"
+#include "archive/archive.hpp"
 
 namespace evodevo {
 

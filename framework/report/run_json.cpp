@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-#include "evolution/evolution.hpp"
+#include "archive/progress.hpp"
+#include "base/statistics.hpp"
 #include "experiment/islands/neighbours.hpp"
 #include "report/diversity.hpp"
 #include "report/lineage.hpp"

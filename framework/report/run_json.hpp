@@ -3,7 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "evolution/archive/archive.hpp"
+#include "archive/archive.hpp"
+#include "base/statistics.hpp"
 
 namespace evodevo {
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "evolution/archive/archive.hpp"
+#include "archive/archive.hpp"
 #include "signal/estimates.hpp"
 
 namespace evodevo {

@@ -7,8 +7,8 @@
 #include <set>
 #include <sstream>
 
+#include "archive/archive.hpp"
 #include "base/text.hpp"
-#include "evolution/archive/archive.hpp"
 #include "evolution/evolution.hpp"
 #include "support/elsewhere.hpp"
 #include "support/experiments.hpp"

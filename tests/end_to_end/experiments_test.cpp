@@ -7,7 +7,7 @@
 #include <set>
 #include <tuple>
 
-#include "evolution/islands/island_folders.hpp"
+#include "archive/island_folders.hpp"
 #include "support/program.hpp"
 #include "support/scratch.hpp"
 

@@ -69,17 +69,10 @@ TEST(Help, TheFirstPageHasEveryCommandAndTopicAndEachExplainsItself) {
   EXPECT_THAT(refusal({"help", "archiv"}), naming("help archiv: ", "did you mean \"archive\"?"));
 }
 
-TEST(Help, TheExperimentOfTheTopicRunsAndItsTablesExist) {
+TEST(Help, TheExperimentOfTheTopicRuns) {
   const Topic& topic = *std::ranges::find(topics(), "experiment", &Topic::name);
   const Scratch scratch;
   said({"check", scratch.write("topic.toml", topic.example)});
-  for (const Definition& definition : topic.definitions) {
-    const std::string table = definition.term.substr(0, definition.term.find(','));
-    if (table.find("NAME") != table.npos || topic.example.find(table) != std::string::npos) continue;
-    const std::string key = table.substr(table.find_first_not_of('['), table.find(']') - table.find_first_not_of('['));
-    const std::string added = table.starts_with("[[") ? "[[" + key + "]]\nname = \"two-point\"\n" : "[" + key + "]\n";
-    said({"check", scratch.write("with.toml", topic.example + added)});
-  }
 }
 
 /// Returns the lines that a command prints; expects that it succeeds.

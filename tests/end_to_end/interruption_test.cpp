@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "evolution/archive/archive.hpp"
+#include "archive/archive.hpp"
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
 #include "support/program.hpp"

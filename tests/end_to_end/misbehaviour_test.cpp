@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "evolution/archive/archive.hpp"
+#include "archive/archive.hpp"
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
 #include "support/program.hpp"

@@ -11,8 +11,8 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "archive/archive.hpp"
 #include "base/text.hpp"
-#include "evolution/archive/archive.hpp"
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
 #include "support/program.hpp"

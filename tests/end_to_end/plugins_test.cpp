@@ -7,8 +7,8 @@
 #include <iterator>
 #include <sstream>
 
+#include "archive/archive.hpp"
 #include "base/text.hpp"
-#include "evolution/archive/archive.hpp"
 #include "operators/loader.hpp"
 #include "support/experiments.hpp"
 #include "support/messages.hpp"

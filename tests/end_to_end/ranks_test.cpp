@@ -9,7 +9,7 @@
 #include <set>
 #include <sstream>
 
-#include "evolution/archive/archive.hpp"
+#include "archive/archive.hpp"
 #include "operators/loader.hpp"
 #include "support/experiments.hpp"
 #include "support/islands.hpp"

@@ -21,7 +21,7 @@ grep -q '^cmake --install' <<<"${commands%%$'\n'*}" || { echo "README.md does no
 sed -n '/^```cpp$/,/^```$/p' <<<"$section" | grep -v '^```' >"$scratch/loop"
 if [ ! -d "$build/share/evodevo/viewer" ]; then
   echo "without the page, which is not built here"
-  commands=$(grep -v '^evodevo report' <<<"$commands")
+  commands=$(grep -v '^evodevo report' <<<"$commands")$'\n'
 fi
 
 # before the second build, replaces the loop of the template with that of the README

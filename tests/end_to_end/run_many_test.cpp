@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "evolution/archive/archive.hpp"
+#include "archive/archive.hpp"
 #include "support/experiments.hpp"
 #include "support/islands.hpp"
 #include "support/messages.hpp"

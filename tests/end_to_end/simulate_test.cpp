@@ -10,7 +10,8 @@
 #include <thread>
 
 #include "analysis/ground.hpp"
-#include "evolution/archive/archive.hpp"
+#include "archive/archive.hpp"
+#include "archive/recorded_experiment.hpp"
 #include "life/evaluation.hpp"
 #include "support/experiments.hpp"
 #include "support/messages.hpp"

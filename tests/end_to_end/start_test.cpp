@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "evolution/archive/archive.hpp"
+#include "archive/archive.hpp"
 #include "support/experiments.hpp"
 #include "support/messages.hpp"
 #include "support/program.hpp"

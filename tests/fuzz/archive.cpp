@@ -1,8 +1,8 @@
 // Changes in the record of a run. Each is a column, a row and a value of any type.
-#include "evolution/archive/archive.hpp"
+#include "archive/archive.hpp"
 
-#include "evolution/evolution.hpp"
-#include "evolution/record_check.hpp"
+#include "archive/record_check.hpp"
+#include "archive/recorded_experiment.hpp"
 #include "fuzz/embedded.hpp"
 #include "fuzz/input.hpp"
 #include "fuzz/small_run.hpp"

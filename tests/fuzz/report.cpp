@@ -2,8 +2,9 @@
 // made.
 #include "report/report.hpp"
 
+#include "archive/archive.hpp"
+#include "archive/recorded_experiment.hpp"
 #include "base/text.hpp"
-#include "evolution/archive/archive.hpp"
 #include "experiment/device.hpp"
 #include "fuzz/embedded.hpp"
 #include "fuzz/small_run.hpp"

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "evolution/archive/archive.hpp"
+#include "archive/archive.hpp"
 #include "evolution/evolution.hpp"
 #include "experiment/device.hpp"
 #include "experiment/experiment.hpp"

@@ -11,9 +11,10 @@
 #include <functional>
 #include <thread>
 
-#include "evolution/archive/archive_writer.hpp"
-#include "evolution/archive/database.hpp"
-#include "evolution/archive/schema.hpp"
+#include "archive/archive_writer.hpp"
+#include "archive/database.hpp"
+#include "archive/recorded_experiment.hpp"
+#include "archive/schema.hpp"
 #include "support/archives.hpp"
 #include "support/experiments.hpp"
 #include "support/messages.hpp"

@@ -1,14 +1,14 @@
 // Runs that fail in the middle: committed generations are kept, and resuming gives the same result as without a
 // failure.
-#include "evolution/evolution.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "archive/progress.hpp"
+#include "archive/record_check.hpp"
+#include "base/statistics.hpp"
 #include "commands/run/run.hpp"
-#include "evolution/record_check.hpp"
 #include "support/experiments.hpp"
 #include "support/lives.hpp"
 #include "support/messages.hpp"

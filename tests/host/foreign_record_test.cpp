@@ -7,8 +7,8 @@
 #include <fstream>
 #include <random>
 
+#include "archive/archive.hpp"
 #include "commands/commands.hpp"
-#include "evolution/archive/archive.hpp"
 #include "evolution/evolution.hpp"
 #include "evolution/resimulation.hpp"
 #include "experiment/device.hpp"

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <set>
 
-#include "evolution/evolution.hpp"
 #include "evolution/islands/migration.hpp"
 #include "experiment/islands/island_tables.hpp"
 #include "experiment/islands/neighbours.hpp"

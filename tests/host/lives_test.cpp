@@ -13,8 +13,8 @@
 #include <set>
 
 #include "analysis/energy.hpp"
+#include "archive/record_check.hpp"
 #include "evolution/clones.hpp"
-#include "evolution/record_check.hpp"
 #include "evolution/resimulation.hpp"
 #include "evolution/selection_table.hpp"
 #include "life/measurement/combining.hpp"

@@ -6,9 +6,10 @@
 #include <fstream>
 #include <set>
 
+#include "archive/archive.hpp"
+#include "archive/recorded_experiment.hpp"
 #include "base/genome_sections.hpp"
 #include "evodevo/neat.hpp"
-#include "evolution/archive/archive.hpp"
 #include "experiment/toml_writer.hpp"
 #include "report/genes_json.hpp"
 #include "report/lineage.hpp"

@@ -14,6 +14,7 @@
 #include <random>
 
 #include "analysis/ground.hpp"
+#include "archive/recorded_experiment.hpp"
 #include "environments/scene_effect.hpp"
 #include "report/diversity.hpp"
 #include "report/film_json.hpp"

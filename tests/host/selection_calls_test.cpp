@@ -7,10 +7,10 @@
 #include <cstring>
 #include <limits>
 
+#include "archive/record_check.hpp"
 #include "commands/run/run.hpp"
 #include "evodevo/helpers/rows.hpp"
 #include "evodevo/helpers/selection/memory.hpp"
-#include "evolution/record_check.hpp"
 #include "evolution/selection_table.hpp"
 #include "support/changed.hpp"
 #include "support/experiments.hpp"

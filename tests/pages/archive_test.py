@@ -11,7 +11,7 @@ from pathlib import Path
 
 from pages import ROOT, blocks, make_small_run
 
-PAGE = ROOT / "framework/evolution/archive/README.md"
+PAGE = ROOT / "framework/archive/README.md"
 MAY_BE_EMPTY = ("status <> 'ok'", "FROM immigrants")  # a run may have no failures, and has islands only if it asks
 
 

@@ -21,7 +21,7 @@ WRITTEN = ("build/", "runs/", "my-plugins/", "my-lab.growth/", "share/", "includ
 # pages of the package, and where they come from
 INSTALLED = {"plugins.md": "framework/sdk/README.md", "operators.md": "plugins/README.md",
              "experiments.md": "experiments/README.md", "commands.md": "framework/commands/README.md",
-             "archive.md": "framework/evolution/archive/README.md", "simulation.md": "kernels/README.md",
+             "archive.md": "framework/archive/README.md", "simulation.md": "kernels/README.md",
              "python.md": "tools/python/README.md"}
 
 

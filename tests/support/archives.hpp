@@ -1,7 +1,7 @@
 // Archives for tests.
 #pragma once
 
-#include "evolution/archive/archive.hpp"
+#include "archive/archive.hpp"
 
 namespace evodevo::testing {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "archive/island_folders.hpp"
 #include "engine/run.hpp"
-#include "evolution/islands/island_folders.hpp"
 #include "support/changed.hpp"
 #include "support/experiments.hpp"
 #include "support/runs.hpp"

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "archive/archive.hpp"
 #include "cpu/simulator.hpp"
 #include "engine/run.hpp"
-#include "evolution/archive/archive.hpp"
 #include "evolution/breeding.hpp"
 #include "evolution/evolution.hpp"
 #include "support/scratch.hpp"

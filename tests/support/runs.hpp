@@ -5,7 +5,7 @@
 
 #include <tuple>
 
-#include "evolution/archive/archive.hpp"
+#include "archive/archive.hpp"
 
 namespace evodevo::testing {
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "evolution/population.hpp"
+#include "archive/population.hpp"
 
 namespace evodevo {
 

@@ -1,7 +1,7 @@
 // The page on which a run shows itself when it ends.
 #pragma once
 
-#include "evolution/archive/archive.hpp"
+#include "archive/archive.hpp"
 
 namespace evodevo {
 

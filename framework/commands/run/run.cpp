@@ -5,6 +5,7 @@
 #include <iostream>
 #include <iterator>
 
+#include "archive/island_folders.hpp"
 #include "base/text.hpp"
 #include "cluster/ranks.hpp"
 #include "commands/commands.hpp"
@@ -15,11 +16,9 @@
 #include "commands/shell/options.hpp"
 #include "commands/shell/output/notices.hpp"
 #include "commands/shell/verification_report.hpp"
-#include "evolution/islands/island_folders.hpp"
 #include "experiment/device.hpp"
 #include "operators/call_watch.hpp"
 #include "operators/plugin_folders.hpp"
-#include "report/run_json.hpp"
 #include "threads/parallel.hpp"
 
 namespace evodevo {
@@ -32,8 +31,8 @@ std::string resume_command_for(const Run& run) { return shell_command({"resume",
 /// Returns a line that says which generations the run has completed and how to continue it, or an empty text if a file
 /// of the run is gone.
 std::string state_of(const Run& run) {
-  for (const Archive& archive : run.archives())
-    if (!archive.is_in_place()) return "";
+  if (run.archives().size() != run.experiments().size() || !std::ranges::all_of(run.archives(), &Archive::is_in_place))
+    return "";
   const std::vector<std::uint32_t> next = next_generations(run.archives());
   const auto [least, most] = std::ranges::minmax(next);
   std::string complete;

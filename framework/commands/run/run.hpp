@@ -19,9 +19,9 @@ struct RunOutput {
 /// Makes the run that arguments of the command `run` ask for, without other ranks, and returns the exit code.
 int make_run(const Given& given);
 
-/// Advances a run until it is finished or interrupted. Prints the outcome and returns the exit code. Throws
-/// std::runtime_error if anything fails, for example the simulator's device. The message gives the cause, the last
-/// complete generation and the command that continues the run.
+/// Advances a run, whose RunSpec::stop is stop_requested(), until it is finished or interrupted. Prints the outcome and
+/// returns the exit code. Throws std::runtime_error if anything fails, for example the simulator's device. The message
+/// gives the cause, the last complete generation and the command that continues the run.
 int evolve_and_report(Run& run, const RunOutput& output = {});
 
 }  // namespace evodevo

@@ -7,19 +7,24 @@ namespace evodevo {
 
 namespace fs = std::filesystem;
 
-void add_journal_option(Options& options) {
-  options.add_options()(
-      "journal", value<std::string>("wal|delete"),
-      "journal mode of SQLite: with wal, the run and its readers never wait for each other; delete also "
-      "works on network file systems; default: wal if the file system can do it");
-}
+namespace {
 
+/// Returns the value of --journal, or nullopt if the option is not given.
 std::optional<Journal> given_journal(const Given& given) {
   if (!given.contains("journal")) return std::nullopt;
   const auto text = given["journal"].as<std::string>();
   const auto journal = journal_named(text);
   if (!journal) throw UsageError("--journal " + text + ": expected wal or delete");
   return journal;
+}
+
+}  // namespace
+
+void add_journal_option(Options& options) {
+  options.add_options()(
+      "journal", value<std::string>("wal|delete"),
+      "journal mode of SQLite: with wal, the run and its readers never wait for each other; delete also "
+      "works on network file systems; default: wal if the file system can do it");
 }
 
 RunSpec given_spec(const Given& given, const fs::path& folder) {

@@ -15,9 +15,6 @@ namespace evodevo {
 
 /// Adds --journal.
 void add_journal_option(Options& options);
-/// Returns the value of --journal, or nullopt if the option is not given. Throws UsageError if the value is neither wal
-/// nor delete.
-std::optional<Journal> given_journal(const Given& given);
 
 /// Returns what the options of `run` or `resume` say of the run in a folder. Throws UsageError.
 RunSpec given_spec(const Given& given, const std::filesystem::path& folder);

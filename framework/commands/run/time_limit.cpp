@@ -64,7 +64,6 @@ TimeLimit::TimeLimit(Clock::time_point begin, Clock::time_point end) : last_gene
 }
 
 void TimeLimit::generation_done(double seconds, Clock::time_point now) {
-  const std::lock_guard lock(mutex_);
   longest_ = std::max(longest_, seconds);
   if (now + Seconds(longest_) > last_generation_end_) is_reached_ = true;
 }

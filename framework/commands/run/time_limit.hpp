@@ -1,9 +1,7 @@
 // The end of a run by the clock.
 #pragma once
 
-#include <atomic>
 #include <chrono>
-#include <mutex>
 #include <string>
 
 namespace evodevo {
@@ -15,8 +13,6 @@ namespace evodevo {
 ///
 /// A tenth of the time, at most half an hour, is the reserve for verification and the page. If a generation takes
 /// longer than all before it, it may use up the reserve, and even the time after the end, because it is not cut off.
-///
-/// Several threads may use it.
 class TimeLimit {
  public:
   using Clock = std::chrono::steady_clock;
@@ -32,9 +28,8 @@ class TimeLimit {
 
  private:
   Clock::time_point end_, last_generation_end_;
-  std::mutex mutex_;
   double longest_ = 0;  ///< generation, s
-  std::atomic<bool> is_reached_ = false;
+  bool is_reached_ = false;
 };
 
 /// Returns the end that the option --until gives: a duration from now, such as "90m" or "11.5h" (s, m, h, d), or a

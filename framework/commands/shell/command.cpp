@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <iostream>
 
+#include "archive/archive.hpp"
 #include "base/text.hpp"
 #include "commands/shell/help.hpp"
 #include "commands/shell/output/notices.hpp"
-#include "evolution/archive/archive.hpp"
 
 namespace evodevo {
 

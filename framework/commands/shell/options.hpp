@@ -1,8 +1,8 @@
 // Command-line options that several commands share.
 #pragma once
 
+#include "archive/archive.hpp"
 #include "commands/shell/command.hpp"
-#include "evolution/archive/archive.hpp"
 #include "experiment/experiment.hpp"
 
 namespace evodevo {

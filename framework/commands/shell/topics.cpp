@@ -15,48 +15,7 @@ Topic experiment() {
                "`evodevo check FILE` says whether an experiment can be run, `evodevo operators` lists the operators "
                "that it can name, and `evodevo describe OPERATOR` explains the keys of one operator. `evodevo describe "
                "experiment` prints the keys of all tables with their ranges."},
-      .definitions =
-          {{"[experiment]",
-            "How long the run takes: seed, evaluations, spring_evaluations; population, and children, the number of "
-            "newborns of a generation; verify, the number of best individuals that are verified at the end; "
-            "verify_front, how individuals are verified before they enter the front; lives and birth_noise, how often "
-            "each individual lives, and in what its lives differ."},
-           {"[encoding]",
-            "The operator that builds a body from a genome: name, and the parameters of that operator. The "
-            "neural encoding has points, neighbours and mass (kg), among others."},
-           {"[[mutation]], [[crossover]]",
-            "The operators that make children: name, probability, and parameters. Each "
-            "is applied to a child with its probability, crossovers first."},
-           {"[scene.gravity]", "acceleration (m/s^2, downwards) and slope (degrees)."},
-           {"[scene.floor]",
-            "stiffness (N/m), or restitution, which makes the floor rigid; roughness (m), wavelength (m) and seed of "
-            "rough ground."},
-           {"[scene.friction]",
-            "coefficient of Coulomb friction with the floor; static, the coefficient that holds masses at rest."},
-           {"[scene.damping]", "rate (1/s) at which all velocities decay."},
-           {"[scene.drag]", "coefficient (kg/m) of quadratic drag on each mass."},
-           {"[scene.payload]",
-            "A payload: share, its mass relative to the body's; top, the upper fraction of the body that carries it."},
-           {"[simulation]",
-            "accuracy (paper, fast, balanced or reference), a preset for method, precision, dt (s, or "
-            "auto) and refine; materials (table or computed); unstable (invalid or run); device "
-            "(auto, cpu or cuda) and threads (0: all cores)."},
-           {"[development]",
-            "cycles, and cycle_time (s) of each; reset; control, for control experiments; probe and "
-            "skip, which say how stress is measured."},
-           {"[[development.operator]]",
-            "The operators that change a body after a cycle: name, parameters, and the "
-            "schedule from, to and every, counted in cycles."},
-           {"[[fitness]]",
-            "The operators that score a life: name, and parameters such as settle and window (s). Several "
-            "define a Pareto front."},
-           {"[selection]",
-            "The operator that chooses survivors and parents: name, and parameters. [selection.survivors] and "
-            "[selection.parents] name two operators instead."},
-           {"[materials.NAME]",
-            "A material: stiffness (N/m), amplitude, frequency (Hz), phase (rad) and damping (ratio). The names "
-            "muscle, muscle2, tissue, bone and air exist already and can be changed."},
-           {"[plugins]", "paths: folders with operators, relative to the file."}},
+      .definitions = {},
       .example = R"([experiment]
 evaluations = 600
 population = 30

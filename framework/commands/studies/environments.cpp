@@ -6,6 +6,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "archive/record_check.hpp"
+#include "archive/recorded_experiment.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "commands/commands.hpp"
@@ -14,7 +16,6 @@
 #include "environments/experiment_difference.hpp"
 #include "environments/scene_study.hpp"
 #include "evolution/breeding.hpp"
-#include "evolution/record_check.hpp"
 
 namespace evodevo {
 namespace {

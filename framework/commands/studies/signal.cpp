@@ -5,6 +5,9 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "archive/island_folders.hpp"
+#include "archive/record_check.hpp"
+#include "archive/recorded_experiment.hpp"
 #include "base/json_text.hpp"
 #include "base/output_file.hpp"
 #include "base/text.hpp"
@@ -12,8 +15,6 @@
 #include "commands/shell/options.hpp"
 #include "commands/shell/output/notices.hpp"
 #include "engine/builds.hpp"
-#include "evolution/islands/island_folders.hpp"
-#include "evolution/record_check.hpp"
 #include "signal/measuring.hpp"
 #include "signal/telling.hpp"
 

@@ -11,7 +11,7 @@
 #include <tuple>
 #include <vector>
 
-#include "evolution/population.hpp"
+#include "archive/population.hpp"
 
 namespace evodevo {
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "archive/progress.hpp"
+#include "archive/record_check.hpp"
 #include "base/philox.hpp"
-#include "evolution/evolution.hpp"
-#include "evolution/record_check.hpp"
 #include "experiment/islands/neighbours.hpp"
 
 namespace evodevo {

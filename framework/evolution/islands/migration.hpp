@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "evolution/archive/archive.hpp"
+#include "archive/archive.hpp"
 #include "evolution/islands/exchange.hpp"
 
 namespace evodevo {

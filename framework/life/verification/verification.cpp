@@ -6,7 +6,6 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "cpu/simulator.hpp"
 #include "experiment/device.hpp"
 #include "life/birth.hpp"
 #include "life/measurement/combining.hpp"
@@ -204,8 +203,7 @@ std::vector<std::vector<Trial>> at_once(const std::vector<Repeat>& repeats) {
 ExactSimulators exact_simulators_on(bool cpu, const Experiment& experiment) {
   const auto simulator = [&](Method method) {
     const Stepping stepping{method, Precision::float64, experiment.stepping.materials};
-    return cpu ? make_cpu_simulator(experiment.scene, stepping, static_cast<int>(experiment.threads))
-               : make_simulator(experiment, stepping);
+    return make_simulator(experiment, stepping, cpu ? Device::cpu : experiment.device);
   };
   const Method method = experiment.stepping.method;
   return {simulator(method), simulator(other_method(method))};

@@ -4,12 +4,12 @@
 
 #include <limits>
 
+#include "archive/record_check.hpp"
 #include "base/genome_sections.hpp"
 #include "base/philox.hpp"
 #include "base/text.hpp"
 #include "bodies.hpp"
 #include "evolution/breeding.hpp"
-#include "evolution/record_check.hpp"
 #include "evolution/resimulation.hpp"
 #include "experiment/device.hpp"
 #include "operators/loader.hpp"

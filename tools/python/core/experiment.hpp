@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
+#include "archive/archive.hpp"
 #include "arrays.hpp"
-#include "evolution/archive/archive.hpp"
 #include "life/evaluation.hpp"
 
 namespace evodevo::python {

@@ -1,4 +1,4 @@
-"""The archive of a run. framework/evolution/archive/README.md describes its tables."""
+"""The archive of a run. framework/archive/README.md describes its tables."""
 
 import functools
 import json

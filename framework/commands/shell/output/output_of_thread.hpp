@@ -15,8 +15,6 @@ class OutputOfThread {
   OutputOfThread& operator=(const OutputOfThread&) = delete;
   ~OutputOfThread();
 
-  /// Where the output of this thread goes; null: to standard output and standard error.
-  static std::streambuf* target();
 
  private:
   std::streambuf* before_;  ///< the thread's target before

@@ -1,4 +1,4 @@
-#include "evolution/archive/schema.hpp"
+#include "archive/schema.hpp"
 
 #include <map>
 

@@ -1,8 +1,8 @@
 // What the selection operator remembers and notes, in the archive.
 #pragma once
 
-#include "evolution/archive/database.hpp"
-#include "evolution/population.hpp"
+#include "archive/database.hpp"
+#include "archive/population.hpp"
 
 namespace evodevo {
 

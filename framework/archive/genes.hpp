@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "archive/database.hpp"
 #include "evodevo/genome.hpp"
-#include "evolution/archive/database.hpp"
 
 namespace evodevo {
 

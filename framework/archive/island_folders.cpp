@@ -1,8 +1,9 @@
-#include "evolution/islands/island_folders.hpp"
+#include "archive/island_folders.hpp"
 
 #include <algorithm>
 #include <functional>
 
+#include "archive/recorded_experiment.hpp"
 #include "base/text.hpp"
 
 namespace evodevo {

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "archive/archive.hpp"
+#include "archive/database.hpp"
+#include "archive/genes.hpp"
 #include "base/text.hpp"
-#include "evolution/archive/archive.hpp"
-#include "evolution/archive/database.hpp"
-#include "evolution/archive/genes.hpp"
 
 namespace evodevo {
 namespace {

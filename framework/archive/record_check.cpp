@@ -1,12 +1,12 @@
-#include "evolution/record_check.hpp"
+#include "archive/record_check.hpp"
 
 #include <algorithm>
 #include <optional>
 #include <sstream>
 
+#include "archive/progress.hpp"
+#include "base/genome_sections.hpp"
 #include "base/text.hpp"
-#include "evolution/breeding.hpp"
-#include "evolution/evolution.hpp"
 
 namespace evodevo {
 namespace {

@@ -55,11 +55,6 @@ Newborn newborn_of(const Individual& individual);
 /// order.
 std::vector<std::size_t> fittest_first(const std::vector<Individual>& individuals, bool maximise);
 
-/// The best and the median of the scores of several individuals; none without individuals.
-struct BestAndMedian {
-  std::optional<double> best, median;
-};
-
 /// The summary of one generation.
 struct Summary {
   std::uint32_t generation = 0;

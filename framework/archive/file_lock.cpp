@@ -1,4 +1,4 @@
-#include "evolution/archive/file_lock.hpp"
+#include "archive/file_lock.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -6,7 +6,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "evolution/archive/error.hpp"
+#include "archive/error.hpp"
 
 namespace evodevo {
 
@@ -21,9 +21,8 @@ FileLock::FileLock(const std::filesystem::path& file)
   const int error = errno;
   ::close(descriptor_);
   if (error == EAGAIN || error == EACCES)
-    throw ArchiveError(
-        folder +
-        ": another evodevo process, or this one, is writing this run; wait for it or stop it first");
+    throw ArchiveError(folder +
+                       ": another evodevo process, or this one, is writing this run; wait for it or stop it first");
   throw ArchiveError(folder + ": cannot be locked (" + std::strerror(error) +
                      "); choose a folder on a file system that can lock files");
 }

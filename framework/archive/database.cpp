@@ -1,4 +1,4 @@
-#include "evolution/archive/database.hpp"
+#include "archive/database.hpp"
 
 #include <SQLiteCpp/Backup.h>
 #include <sqlite3.h>

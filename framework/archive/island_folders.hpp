@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "evolution/archive/archive.hpp"
+#include "archive/archive.hpp"
 
 namespace evodevo {
 

@@ -3,7 +3,7 @@
 
 #include <future>
 
-#include "evolution/archive/archive.hpp"
+#include "archive/archive.hpp"
 
 namespace evodevo {
 

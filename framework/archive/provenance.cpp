@@ -1,4 +1,4 @@
-#include "evolution/provenance.hpp"
+#include "archive/provenance.hpp"
 
 #include <algorithm>
 

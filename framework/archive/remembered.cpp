@@ -1,9 +1,9 @@
-#include "evolution/archive/remembered.hpp"
+#include "archive/remembered.hpp"
 
 #include <limits>
 #include <map>
 
-#include "evolution/archive/archive.hpp"
+#include "archive/archive.hpp"
 
 namespace evodevo {
 

@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <ranges>
 
-#include "evolution/archive/archive.hpp"
-#include "evolution/archive/database.hpp"
-#include "evolution/archive/genes.hpp"
-#include "evolution/archive/remembered.hpp"
+#include "archive/archive.hpp"
+#include "archive/database.hpp"
+#include "archive/genes.hpp"
+#include "archive/remembered.hpp"
 
 namespace evodevo {
 namespace {

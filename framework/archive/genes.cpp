@@ -1,4 +1,4 @@
-#include "evolution/archive/genes.hpp"
+#include "archive/genes.hpp"
 
 #include <bit>
 #include <cstring>

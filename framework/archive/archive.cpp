@@ -1,4 +1,4 @@
-#include "evolution/archive/archive.hpp"
+#include "archive/archive.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -9,10 +9,9 @@
 #include <ctime>
 #include <fstream>
 
+#include "archive/genes.hpp"
+#include "archive/schema.hpp"
 #include "base/text.hpp"
-#include "evolution/archive/genes.hpp"
-#include "evolution/archive/schema.hpp"
-#include "evolution/record_check.hpp"
 
 namespace evodevo {
 namespace {
@@ -206,28 +205,5 @@ bool Archive::is_in_place() const {
 }
 
 void Archive::refuse(const std::string& what) const { run_->refuse(what); }
-
-Settings recorded_settings(const Archive& archive) {
-  Settings settings = read_settings(archive.record("experiment"), (archive.folder() / "record of the run").string());
-  settings.name = printable(archive.record("name"));
-  return settings;
-}
-
-Experiment recorded_experiment(const Archive& archive, std::vector<fs::path> plugin_path,
-                               std::vector<Override> overrides) {
-  Experiment experiment =
-      read_experiment(archive.record("experiment"), {.file = (archive.folder() / "record of the run").string(),
-                                                     .overrides = std::move(overrides),
-                                                     .plugin_path = std::move(plugin_path),
-                                                     .is_record = true,
-                                                     .files = archive.files()});
-  experiment.name = printable(archive.record("name"));
-  experiment.island = archive.island();
-  if (experiment.island > (experiment.islands ? experiment.islands->count : 0))
-    archive.refuse("its entry \"island\" is " + std::to_string(experiment.island) +
-                   ", more than the count in [islands] of its experiment");
-  check_objectives(archive, experiment);
-  return experiment;
-}
 
 }  // namespace evodevo

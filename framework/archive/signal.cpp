@@ -1,6 +1,6 @@
 // The functions of Archive that read and write what was measured of a run.
-#include "evolution/archive/archive.hpp"
-#include "evolution/archive/database.hpp"
+#include "archive/archive.hpp"
+#include "archive/database.hpp"
 
 namespace evodevo {
 

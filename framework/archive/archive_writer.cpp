@@ -1,4 +1,4 @@
-#include "evolution/archive/archive_writer.hpp"
+#include "archive/archive_writer.hpp"
 
 #include <chrono>
 #include <memory>

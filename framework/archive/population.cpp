@@ -1,4 +1,4 @@
-#include "evolution/population.hpp"
+#include "archive/population.hpp"
 
 #include <algorithm>
 #include <functional>

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "evolution/archive/error.hpp"
-#include "evolution/archive/journal.hpp"
-#include "evolution/population.hpp"
-#include "evolution/provenance.hpp"
+#include "archive/error.hpp"
+#include "archive/journal.hpp"
+#include "archive/population.hpp"
+#include "archive/provenance.hpp"
 #include "life/verification/verification.hpp"
 
 namespace evodevo {
@@ -243,13 +243,5 @@ class Archive {
   std::unique_ptr<RunDatabase> run_;
   mutable std::optional<Layout> layout_;  ///< read when it is first needed
 };
-
-/// Returns the settings of a run from its record, without loading any operator.
-Settings recorded_settings(const Archive& archive);
-
-/// Returns the experiment of a run from its record, and loads its operators, for which it also searches the folders in
-/// `plugin_path`.
-Experiment recorded_experiment(const Archive& archive, std::vector<std::filesystem::path> plugin_path = {},
-                               std::vector<Override> overrides = {});
 
 }  // namespace evodevo

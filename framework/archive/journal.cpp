@@ -1,4 +1,4 @@
-#include "evolution/archive/journal.hpp"
+#include "archive/journal.hpp"
 
 #include <sys/vfs.h>
 

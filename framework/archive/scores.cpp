@@ -1,9 +1,9 @@
 // The functions of Archive that read scores and lives apart from the individuals that have them.
 #include <limits>
 
+#include "archive/archive.hpp"
+#include "archive/database.hpp"
 #include "base/text.hpp"
-#include "evolution/archive/archive.hpp"
-#include "evolution/archive/database.hpp"
 
 namespace evodevo {
 namespace {

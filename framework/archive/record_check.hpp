@@ -3,7 +3,7 @@
 // the errors in it.
 #pragma once
 
-#include "evolution/archive/archive.hpp"
+#include "archive/archive.hpp"
 
 namespace evodevo {
 

@@ -12,9 +12,9 @@
 #include <string>
 #include <string_view>
 
-#include "evolution/archive/error.hpp"
-#include "evolution/archive/file_lock.hpp"
-#include "evolution/archive/journal.hpp"
+#include "archive/error.hpp"
+#include "archive/file_lock.hpp"
+#include "archive/journal.hpp"
 
 namespace evodevo {
 

@@ -1,7 +1,7 @@
 // The tables of a run's SQLite file.
 #pragma once
 
-#include "evolution/archive/database.hpp"
+#include "archive/database.hpp"
 
 namespace evodevo {
 
