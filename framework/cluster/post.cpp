@@ -86,8 +86,8 @@ void Post::sort(Received received) {
   if (group_.has(received.from)) return shared_.put_in_box(std::move(received));
   try {
     take(received.from, received.bytes);
-  } catch (const std::exception& error) {  // a message that cannot be read
-    take_failure(received.from, error.what());
+  } catch (const std::exception& error) {  // of a message that cannot be read, or of on_generation_
+    note_failure(error.what());
   }
 }
 
@@ -154,11 +154,16 @@ void Post::check_silence() {
   }
 }
 
-void Post::take_failure(int rank, const std::string& reason) {
+void Post::note_failure(const std::string& reason) {
   const std::lock_guard lock(mutex_);
   if (!failure_) failure_ = reason;
-  ended_.insert(rank);
   stop_ = true;
+}
+
+void Post::take_failure(int rank, const std::string& reason) {
+  note_failure(reason);
+  const std::lock_guard lock(mutex_);
+  ended_.insert(rank);
 }
 
 void Post::tell_first_ranks(const std::string& bytes) {

@@ -33,8 +33,8 @@ class Post {
  public:
   using OnGeneration = std::function<void(std::int64_t island, const Summary& summary)>;
 
-  /// Sets `stop` if rank 0 says so or falls silent or, on rank 0, if another group fails. If `stop` is set on rank 0,
-  /// tells the others. Calls `on_generation` on rank 0 for the generations of other groups.
+  /// Sets `stop` if rank 0 says so or falls silent or, on rank 0, if another group or `on_generation` fails. If `stop`
+  /// is set on rank 0, tells the others. Calls `on_generation` on rank 0 for the generations of other groups.
   Post(Channel& channel, const Groups& groups, std::atomic<bool>& stop, OnGeneration on_generation,
        const PostOptions& options = {});
   Post(const Post&) = delete;
@@ -98,6 +98,7 @@ class Post {
   void take(int from, const std::string& bytes);
   void beat();
   void check_silence();
+  void note_failure(const std::string& reason);
   void take_failure(int rank, const std::string& reason);
   void tell_first_ranks(const std::string& bytes);
   void wait_for_end();

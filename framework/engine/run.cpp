@@ -102,6 +102,7 @@ struct Run::State {
   void tell(std::int64_t island, const Summary& summary);
   TimeSpent end_work();
   std::optional<std::string> end_groups();
+  void let_go();
   void lead_group();
 };
 
@@ -324,8 +325,12 @@ bool Run::State::make_generation() {
   bool any = false;
   for (std::size_t k = 0; k < due.size(); ++k) {
     if (!made[k]) continue;
-    tell(experiments[due[k]].island, *made[k]);
     any = true;
+    try {
+      tell(experiments[due[k]].island, *made[k]);
+    } catch (...) {
+      if (!failure) failure = std::current_exception();
+    }
   }
   if (failure) std::rethrow_exception(failure);
   return any;
@@ -371,6 +376,13 @@ std::optional<std::string> Run::State::end_groups() {
   return failure;
 }
 
+/// Tells the other ranks that there is no more work.
+void Run::State::let_go() {
+  if (!spec.ranks || std::exchange(has_let_go, true)) return;
+  end_run(*spec.ranks);
+  is_over = true;
+}
+
 bool Run::advance() {
   State& state = *state_;
   if (!state.simulator || state.is_over) return false;
@@ -378,12 +390,12 @@ bool Run::advance() {
     state.begin_work();
     return state.make_generation();
   } catch (...) {
+    state.is_over = state.spec.ranks != nullptr;  // another rank may still be at work for the generation that failed
     if (state.post) state.stop() = true;
     try {
       pause();
-    } catch (const std::exception&) {  // a consequence of the first failure, which is the one to tell
+    } catch (...) {  // a consequence of the first failure, which is the one to tell
     }
-    state.is_over = state.spec.ranks != nullptr;  // another rank may still be at work for the generation that failed
     throw;
   }
 }
@@ -392,6 +404,7 @@ TimeSpent Run::pause() {
   State& state = *state_;
   TimeSpent time;
   std::exception_ptr failure;
+  if (state.post && !is_finished()) state.stop() = true;  // other groups would wait for migrants
   try {
     time = state.end_work();
   } catch (...) {
@@ -409,8 +422,7 @@ std::vector<VerifiedBest> Run::verify(std::size_t count) {
   State& state = *state_;
   std::vector<VerifiedBest> verified;
   if (!state.simulator) return verified;
-  if (state.spec.ranks && !std::exchange(state.has_let_go, true)) end_run(*state.spec.ranks);
-  state.is_over = state.has_let_go;
+  state.let_go();
   std::vector<std::size_t> counts(state.archives.size());  // of an island, its own best come first among all
   for (const IslandIndividual& one : best_of_islands(state.archives, count)) ++counts[one.island];
   for (std::size_t i = 0; i < counts.size(); ++i)
@@ -422,6 +434,7 @@ std::vector<VerifiedBest> Run::verify(std::size_t count) {
 
 std::vector<VerifiedBest> Run::finish() {
   pause();
+  state_->let_go();
   const Experiment& first = experiments().front();
   return is_verifiable(first) ? verify(static_cast<std::size_t>(first.verify)) : std::vector<VerifiedBest>();
 }

@@ -31,8 +31,10 @@ struct RunSpec {
   std::vector<Override> machine = {};                   ///< of the same: values of keys of [simulation]
   std::vector<int> gpus = {};                           ///< of the same: Experiment::gpus
   bool other_versions = false;                          ///< of the same: whether operators may have other versions
-  Channel* ranks = nullptr;  ///< the processes that work on the run, of which this is rank 0; null: this one alone
-  bool mixed = false;        ///< whether ranks may differ in their devices and builds
+  /// The processes that work on the run, of which this is rank 0; null: this one alone. Whoever owns the channel ends
+  /// the run for the others, as Ranks does, if a failure comes before finish().
+  Channel* ranks = nullptr;
+  bool mixed = false;  ///< whether ranks may differ in their devices and builds
   /// If another thread or a signal handler sets it, the run ends after the generation under way. A rank that fails
   /// sets it, too.
   std::atomic<bool>* stop = nullptr;
@@ -75,7 +77,7 @@ class Run {
   /// Of the islands in the order of their numbers, or the only one.
   const std::vector<Experiment>& experiments() const;
   /// Of the islands in the order of their numbers, or the only one. May be used before the first advance() and after
-  /// pause().
+  /// pause(); empty if that could not open all of them.
   const std::vector<Archive>& archives() const;
   bool has_islands() const { return experiments().front().island > 0; }
   Simulator& simulator();
@@ -83,7 +85,8 @@ class Run {
   std::vector<Share> shares() const;
 
   /// Lets the run call these functions from now on. It never calls two at once, but, if ranks evolve islands, also on a
-  /// thread of its own until pause(). Of islands, it tells only what they have completed.
+  /// thread of its own until pause(). Of islands, it tells only what they have completed. Not to be called from within
+  /// these functions.
   void observe(Observer observer);
 
   /// Whether the run has used up what the experiment allows; between advance() and pause(), as far as this rank knows.
@@ -93,15 +96,17 @@ class Run {
   /// Makes the next generation, and commits it or begins to. Islands make theirs at the same time; those that are ahead
   /// wait for the others. Returns false if the run, or the part of this rank, is finished or RunSpec::stop is set; a
   /// generation that has begun is completed. Throws what the device or an operator throws; then the run is as after the
-  /// last generation that was committed, from which the next call goes on, unless it has ranks: those are let go.
+  /// last generation that was committed, from which the next call goes on, unless it has ranks: then no call advances
+  /// it any more.
   bool advance();
   /// Waits until all generations have been committed, and adds the time of this process to the run's record. Returns
-  /// that time, summed over islands. If ranks evolve islands, waits until all have ended, and throws
-  /// std::runtime_error if one has failed; then no call advances the run any more.
+  /// that time, summed over islands. If ranks evolve islands, ends their work after the
+  /// generations under way, and throws std::runtime_error if one has failed; in either case, no call advances the run
+  /// any more.
   TimeSpent pause();
   /// pause(), lets the other ranks go, and verifies the best `count` individuals, and stores the results.
   std::vector<VerifiedBest> verify(std::size_t count);
-  /// pause(), and verifies as many of the best as the experiment asks for, if its first objective can be verified.
+  /// The same for as many of the best as the experiment asks for, if its first objective can be verified.
   std::vector<VerifiedBest> finish();
 
   /// Lets this process, which is not rank 0, work for a run of rank 0 until that ends it. `spec` says what this process

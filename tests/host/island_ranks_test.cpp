@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <map>
+#include <optional>
 #include <thread>
 
 #include "engine/run.hpp"
@@ -24,7 +26,7 @@ class IslandRanks : public ::testing::Test {
 
   std::vector<Experiment> read() const { return testing::read_islands(scratch_, testing::small_islands); }
 
-  /// Makes the run in a folder with so many ranks. `others` says what the others are told of it.
+  /// Begins the run in a folder, or goes on with it, with so many ranks. `others` says what the others are told of it.
   void run(
       const std::string& folder, int count, const Watch& watch,
       const std::function<RunSpec()>& others = [] { return RunSpec(); }) {
@@ -41,7 +43,8 @@ class IslandRanks : public ::testing::Test {
       ~Ending() { end_run(channel); }
     } const ending{channel};
     std::atomic<bool> stop = false;
-    auto run = evodevo::Run::begin(read(), {.folder = scratch_ / folder, .ranks = &channel, .stop = &stop});
+    const RunSpec spec{.folder = scratch_ / folder, .ranks = &channel, .stop = &stop};
+    auto run = has_islands(spec.folder) ? evodevo::Run::open(spec) : evodevo::Run::begin(read(), spec);
     if (watch) run.observe({.generation_done = watch});
     try {
       while (run.advance()) {
@@ -56,13 +59,13 @@ class IslandRanks : public ::testing::Test {
     EXPECT_TRUE(run.is_complete());
   }
   void go_on(const std::string& folder) {
-    testing::evolve_islands(read(), scratch_ / folder, 2);
+    run(folder, 3, {});
     testing::evolve_islands(read(), scratch_ / "alone", 2);
     testing::expect_same_islands(scratch_ / "alone", scratch_ / folder);
   }
 
   testing::Scratch scratch_;
-  std::size_t known_ = 0;  ///< archives of a run that has failed
+  std::optional<std::size_t> known_;  ///< number of archives of a run that has failed
 };
 
 TEST_F(IslandRanks, MakeTheRunOfOneProcessAndTellOfAllIslands) {
@@ -76,13 +79,31 @@ TEST_F(IslandRanks, MakeTheRunOfOneProcessAndTellOfAllIslands) {
   }
 }
 
-TEST_F(IslandRanks, EndTogetherIfRankZeroFailsAndAnyNumberOfThemGoesOn) {
-  const auto fail = [](std::int64_t island, const Summary& summary) {
-    if (island == 1 && summary.generation == 2) throw std::runtime_error("the client fails");
-  };
-  EXPECT_EQ(testing::refusal<std::runtime_error>([&] { run("failed", 2, fail); }), "the client fails");
-  EXPECT_EQ(known_, 3u);
-  go_on("failed");
+TEST_F(IslandRanks, EndTogetherIfTheClientFailsAndAnyNumberOfThemGoesOn) {
+  for (const std::int64_t of : {1, 3}) {  // of a group of rank 0, and of another one
+    const auto fail = [&](std::int64_t island, const Summary& summary) {
+      if (island == of && summary.generation == 2) throw std::runtime_error("the client fails");
+    };
+    const std::string folder = "failed " + std::to_string(of);
+    EXPECT_EQ(testing::refusal<std::runtime_error>([&] { run(folder, 2, fail); }), "the client fails");
+    EXPECT_EQ(known_, 3u);
+    go_on(folder);
+  }
+}
+
+TEST_F(IslandRanks, EndTogetherIfTheRunIsPaused) {
+  const auto boxes = std::make_shared<LocalChannel::Boxes>(2);
+  LocalChannel channel(boxes, 0), other(boxes, 1);
+  {
+    const std::jthread thread([&] { evodevo::Run::serve(other, [] { return RunSpec(); }); });
+    auto run = evodevo::Run::begin(read(), {.folder = scratch_ / "paused", .ranks = &channel});
+    EXPECT_TRUE(run.advance());
+    run.pause();
+    EXPECT_FALSE(run.advance());
+    EXPECT_FALSE(run.is_finished());
+    run.finish();
+  }
+  go_on("paused");
 }
 
 TEST_F(IslandRanks, EndTogetherIfTheFolderOfAnIslandIsLost) {

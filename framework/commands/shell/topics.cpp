@@ -6,7 +6,7 @@ namespace {
 Topic experiment() {
   return {
       .name = "experiment",
-      .summary = "The tables and keys of an experiment",
+      .summary = "How an experiment is written",
       .text = {"An experiment is one TOML file. A force that has no table is not computed. A key that is left out has "
                "its default. A key that does not exist is an error that names the file, the line, the column and the "
                "most similar key that exists.",

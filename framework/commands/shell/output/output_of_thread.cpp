@@ -39,7 +39,6 @@ OutputOfThread::OutputOfThread(std::streambuf* target) : before_(target_of_threa
 
 OutputOfThread::~OutputOfThread() { target_of_thread = before_; }
 
-
 bool prints_on_terminal() { return target_of_thread == nullptr && isatty(STDOUT_FILENO) == 1; }
 
 }  // namespace evodevo

@@ -15,7 +15,6 @@ class OutputOfThread {
   OutputOfThread& operator=(const OutputOfThread&) = delete;
   ~OutputOfThread();
 
-
  private:
   std::streambuf* before_;  ///< the thread's target before
 };
