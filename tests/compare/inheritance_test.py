@@ -63,6 +63,9 @@ class Outcomes(InOwnFolder):
         titles = set(re.findall(r"(?m)^## (.*)$", done.stdout))
         for title in ("Evolution goes on on a slope", "Development of a stranger", "Edits that ancestors had"):
             self.assertIn(title, titles)
+        chart = (self.folder / "out" / "outcomes" / "lives.svg").read_text()
+        for arm in ("evo", "individual", "stress"):
+            self.assertIn(f">{arm}<", chart)
         repeats = [key for key in told if key[3] == "repeatability of one life, random"]
         self.assertEqual(len(repeats), 6)
         for key, value in told.items():

@@ -7,8 +7,8 @@ r"""Measures the outcomes of the plan of this study (README.md) after the runs, 
 Of each run it first writes to `kept` what the outcomes need of it: the last population, the line of the best robot, and
 the best robots of earlier generations. Then the run itself can be removed. Each result is kept in `outcomes/rows`, and
 what is there is not measured again. `--jobs N` makes N measurements at once. `--only lives` measures nothing but the
-lives that answer the questions. Prints the tables and writes them to `outcomes/report.md`, and all numbers to
-`outcomes/outcomes.csv`. Needs SciPy.
+lives that answer the questions. Prints the tables and writes them to `outcomes/report.md`, all numbers to
+`outcomes/outcomes.csv` and a chart of the lives to `outcomes/lives.svg`. Needs SciPy and Matplotlib.
 """
 
 import argparse
@@ -26,7 +26,9 @@ sys.path[:0] = [str(HERE), str(HERE.parents[2] / "tools/parts")]
 
 import answers  # noqa: E402
 import bodies  # noqa: E402
+import figures  # noqa: E402
 import kept  # noqa: E402
+from common import charts  # noqa: E402
 from common.command_line import positive  # noqa: E402
 from compare import rows  # noqa: E402
 from compare.continued import Arm, Continuation, Program  # noqa: E402
@@ -276,6 +278,7 @@ def main():
             known[title] = study.each(kind, count, functools.partial(measure, program, study.start))
     study.out.mkdir(exist_ok=True)
     write_csv(known.items(), study.out / "outcomes.csv")
+    charts.save(figures.figure(distances, shares), study.out / "lives.svg")
     kind = "repetition" if given.repetition else "study"
     answered = answers.section(distances, shares, after(0), after(kept.PARTS), kind)
     text = "\n".join([answered, *(report(title, of_arms, SHARES) for title, of_arms in known.items())])
