@@ -100,9 +100,8 @@ class Run {
   /// it any more.
   bool advance();
   /// Waits until all generations have been committed, and adds the time of this process to the run's record. Returns
-  /// that time, summed over islands. If ranks evolve islands, ends their work after the
-  /// generations under way, and throws std::runtime_error if one has failed; in either case, no call advances the run
-  /// any more.
+  /// that time, summed over islands. If ranks evolve islands, ends their work after the generations under way, and
+  /// throws std::runtime_error if one has failed; in either case, no call advances the run any more.
   TimeSpent pause();
   /// pause(), lets the other ranks go, and verifies the best `count` individuals, and stores the results.
   std::vector<VerifiedBest> verify(std::size_t count);
