@@ -12,8 +12,8 @@
 namespace evodevo {
 
 /// Divides ranks among islands. If there are at least as many ranks as islands, each island has a group of ranks;
-/// otherwise each rank is a group of its own and has several islands. The first rank of a group breeds, selects and
-/// writes; the others evaluate for it.
+/// otherwise each rank is a group of its own and has one or several islands. The first rank of a group breeds, selects
+/// and writes; the others evaluate for it.
 class Groups {
  public:
   Groups(int ranks, std::int64_t islands) : ranks_(ranks), islands_(islands) {}

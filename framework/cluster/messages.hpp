@@ -109,7 +109,7 @@ struct Beat {
   static constexpr auto kind = Kind::beat;
 };
 
-/// The run has ended. A rank that gets it leaves the channel.
+/// There is no more work for the other ranks. A rank that gets it leaves the channel.
 struct End {
   std::vector<int> lost;  ///< ranks that have been given up, for which nobody waits
 

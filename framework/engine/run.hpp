@@ -27,16 +27,16 @@ namespace evodevo {
 struct RunSpec {
   std::filesystem::path folder = {};                    ///< of the run; empty: begin() makes runs/NAME-N
   std::optional<Journal> journal = std::nullopt;        ///< of SQLite; nullopt: what the file system can do
-  std::vector<std::filesystem::path> plugin_path = {};  ///< of runs in the folder: more places for operators
-  std::vector<Override> machine = {};                   ///< of the same: values of keys of [simulation]
-  std::vector<int> gpus = {};                           ///< of the same: Experiment::gpus
-  bool other_versions = false;                          ///< of the same: whether operators may have other versions
+  std::vector<std::filesystem::path> plugin_path = {};  ///< where a run is gone on with: more places for operators
+  std::vector<Override> machine = {};                   ///< likewise: values of keys of [simulation]
+  std::vector<int> gpus = {};                           ///< likewise: Experiment::gpus
+  bool other_versions = false;                          ///< likewise: whether operators may have other versions
   /// The processes that work on the run, of which this is rank 0; null: this one alone. Whoever owns the channel ends
   /// the run for the others, as Ranks does, if a failure comes before finish().
   Channel* ranks = nullptr;
   bool mixed = false;  ///< whether ranks may differ in their devices and builds
-  /// If another thread or a signal handler sets it, the run ends after the generation under way. A rank that fails
-  /// sets it, too.
+  /// If another thread or a signal handler sets it, the run ends after the generation under way. If ranks evolve
+  /// islands, a failure sets it, too, and so does pause() before the islands of this rank are finished.
   std::atomic<bool>* stop = nullptr;
 };
 
@@ -100,8 +100,9 @@ class Run {
   /// it any more.
   bool advance();
   /// Waits until all generations have been committed, and adds the time of this process to the run's record. Returns
-  /// that time, summed over islands. If ranks evolve islands, ends their work after the generations under way, and
-  /// throws std::runtime_error if one has failed; in either case, no call advances the run any more.
+  /// that time, summed over islands. If ranks evolve islands, waits until those of other ranks are finished or,
+  /// if those of this rank are not, ends their work after the generations under way; throws std::runtime_error if one
+  /// has failed; in all cases, no call advances the run any more.
   TimeSpent pause();
   /// pause(), lets the other ranks go, and verifies the best `count` individuals, and stores the results.
   std::vector<VerifiedBest> verify(std::size_t count);

@@ -24,9 +24,9 @@ struct Observer {
 
 /// The generation loop of the run in an archive, one generation at a time. A run that was interrupted after any
 /// generation and continued gives the same results as one that was not interrupted. With a migration, the experiment is
-/// that of one island, and others have to evolve at the same time. Everything that the constructor is given must
-/// outlive the object; until pause(), nobody else may use the archive. After a function has thrown, only
-/// pause() may be called.
+/// that of one island, and advance() waits until the islands from which migrants come have made the generation before.
+/// Everything that the constructor is given must outlive the object; until pause(), nobody else may use the archive.
+/// After a function has thrown, only pause() may be called.
 class Evolution {
  public:
   Evolution(const Experiment& experiment, Evaluator& evaluator, Archive& archive, Migration* migration = nullptr);

@@ -50,7 +50,7 @@ void blame_and_die(int signal, siginfo_t* info, void*) {
   std::raise(signal);
 }
 
-/// Called when the process exits with `status`. If an operator's code has caused the exit, reports it and ends the
+/// Called by exit(status). If an operator's code has caused the exit, reports it and ends the
 /// process with exit code 1.
 void refuse_to_exit(int status) {
   const OperatorCall call = current_call();
