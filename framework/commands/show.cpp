@@ -20,7 +20,7 @@
 #include "report/diversity.hpp"
 #include "report/lineage.hpp"
 #include "report/run_json.hpp"
-#include "signal/telling.hpp"
+#include "report/signal.hpp"
 
 namespace evodevo {
 namespace {

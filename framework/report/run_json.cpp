@@ -7,7 +7,7 @@
 #include "experiment/islands/neighbours.hpp"
 #include "report/diversity.hpp"
 #include "report/lineage.hpp"
-#include "signal/telling.hpp"
+#include "report/signal.hpp"
 
 namespace evodevo {
 namespace {

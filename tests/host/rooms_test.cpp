@@ -34,8 +34,8 @@ const Floors floors{{"kernels/include"},
                     {"framework/archive"},
                     {"framework/evolution"},
                     {"framework/cluster"},
-                    {"framework/signal", "framework/engine"},
-                    {"framework/environments", "framework/report", "framework/conformance"},
+                    {"framework/engine"},
+                    {"framework/report"},
                     {"framework/commands"},
                     {"framework/main.cpp", "framework/help.inc"}};
 

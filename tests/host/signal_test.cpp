@@ -10,7 +10,7 @@
 #include "base/philox.hpp"
 #include "signal/estimates.hpp"
 #include "signal/measuring.hpp"
-#include "signal/telling.hpp"
+#include "report/signal.hpp"
 #include "support/lives.hpp"
 #include "support/messages.hpp"
 #include "support/planted.hpp"

@@ -9,7 +9,7 @@ from .faults import KINDS, faults
 from .outcomes import Outcome
 from .workshop import DoesNotCompile
 
-FOLDERS = ("framework/", "kernels/", "plugins/")
+FOLDERS = ("framework/", "kernels/", "plugins/", "tools/parts/commands/")
 NONE = ("does not compile", "changes no program")  # verdicts on what is no fault
 
 

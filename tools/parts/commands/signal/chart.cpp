@@ -1,11 +1,11 @@
-// The chart of children over parents.
+#include "signal/chart.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/text.hpp"
-#include "signal/telling.hpp"
 
 namespace evodevo {
 namespace {

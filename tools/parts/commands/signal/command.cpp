@@ -15,8 +15,9 @@
 #include "commands/shell/options.hpp"
 #include "commands/shell/output/notices.hpp"
 #include "engine/builds.hpp"
+#include "report/signal.hpp"
+#include "signal/chart.hpp"
 #include "signal/measuring.hpp"
-#include "signal/telling.hpp"
 
 namespace evodevo {
 namespace {

@@ -1,4 +1,4 @@
-#include "signal/telling.hpp"
+#include "report/signal.hpp"
 
 #include <fmt/format.h>
 

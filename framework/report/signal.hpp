@@ -1,12 +1,12 @@
-// What the numbers of a signal mean, in sentences, as JSON and as a chart.
+// What the numbers of a signal mean, in sentences and as JSON.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
+#include "archive/archive.hpp"
 #include "experiment/experiment.hpp"
-#include "signal/measuring.hpp"
 
 namespace evodevo {
 
@@ -20,8 +20,5 @@ std::vector<std::string> sentences_on(const std::vector<SignalNumber>& numbers, 
 /// Returns the numbers and the sentences.
 nlohmann::ordered_json signal_json(const std::vector<SignalNumber>& numbers, const Settings& settings,
                                    const Objective& objective);
-
-/// Returns an SVG picture of the scores of children over those of their parents, a panel for each population.
-std::string signal_chart(const Signal& signal, const Objective& objective);
 
 }  // namespace evodevo
