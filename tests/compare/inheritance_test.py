@@ -78,6 +78,9 @@ class Outcomes(InOwnFolder):
         again = self.measure()
         self.assertEqual((again.stdout, again.returncode), (done.stdout, 0), again.stderr)
         self.assertEqual({file: file.stat().st_mtime_ns for file in files}, files)
+        some = set(re.findall(r"(?m)^## (.*)$", self.measure("--only", "inborn").stdout))
+        self.assertIn("Edits that ancestors had", some)
+        self.assertNotIn("Development of a stranger", some)
 
     def test_a_folder_without_runs_is_refused(self):
         done = self.measure()
@@ -103,6 +106,14 @@ class Answers(unittest.TestCase):
         self.assertNotIn(answers.LEARNT[0], text)
         (line,) = [line for line in text.splitlines() if line.startswith("| Do robots that develop")]
         return line.split(" | ")[-1].removesuffix(" |")
+
+    def test_each_arm_is_told_beside_random_search(self):
+        new = {name: run | {"new draws": run["same draws"] - 2} for name, run in runs(*self.HIGH).items()}
+        others = {name: run | {"new draws": None} for name, run in runs(*self.LOW).items()}
+        text = answers.beside({"random-search": others, "stress": new})
+        (line,) = [line for line in text.splitlines() if line.startswith("| `stress`")]
+        same, other = (cell.split(" ")[0] for cell in line.split(" | ")[1:])
+        self.assertEqual((same, other), ("1.00", "0.00"))
 
     def test_a_difference_is_told_with_its_direction(self):
         self.assertEqual(self.answer(runs(*self.HIGH), runs(*self.LOW)), "yes: more")

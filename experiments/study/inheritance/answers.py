@@ -16,6 +16,8 @@ RUNS = {"study": 50, "repetition": 20}  # of each arm, that the plan asks for
 SMALL = 0.1  # a change of the share that is left without development, within which nothing has become inborn
 WHOLE = 0.5  # body lengths: of less, no share is told
 
+BESIDE = ("random-search", "evo")  # the arms beside which all are told
+
 
 def share(part, whole, to=1.0):
     """Returns the share of a distance, between 0 and `to`; None if it is unknown or the whole is too little."""
@@ -112,3 +114,24 @@ def section(distances, shares, first, last, kind="study"):
             f"{INTERVAL}); p (Holm) {holm_held[-1]:.2g}, and {holm_all[-1]:.2g} in all runs: {answer}.\n"
         )
     return text
+
+
+def superiority(runs, way, others):
+    """Returns A12 of the distances of an arm, with its interval, against `others`, with the draws of their runs."""
+    a, b = ([run[key] for run in some.values() if run[key] is not None] for some, key in ((runs, way), (others, "same draws")))
+    if not a or not b:
+        return "-"
+    a12 = inference.superiority(a, b)
+    return "{:.2f} ({:.2f} to {:.2f})".format(a12, *inference.superiority_interval(a12, len(a), len(b)))
+
+
+def beside(distances):
+    """Returns the section that tells each arm's A12 against random search and against no development."""
+    others = [name for name in BESIDE if name in distances]
+    lines = [
+        [f"`{arm}`", *(superiority(runs, way, distances[other]) for other in others for way in ("same draws", "new draws"))]
+        for arm, runs in distances.items()
+    ]
+    header = ["", *(f"{way}, against `{other}`" for other in others for way in ("same draws", "new draws"))]
+    title = "## A12 of the distances in lives to come"
+    return f"{title}\n\nOf all runs, not tested, with {INTERVAL}s.\n\n{table(header, lines)}"

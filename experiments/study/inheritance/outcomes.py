@@ -7,8 +7,9 @@ r"""Measures the outcomes of the plan of this study (README.md) after the runs, 
 Of each run it first writes to `kept` what the outcomes need of it: the last population, the line of the best robot, and
 the best robots of earlier generations. Then the run itself can be removed. Each result is kept in `outcomes/rows`, and
 what is there is not measured again. `--jobs N` makes N measurements at once. `--only lives` measures nothing but the
-lives that answer the questions. Prints the tables and writes them to `outcomes/report.md`, all numbers to
-`outcomes/outcomes.csv` and a chart of the lives to `outcomes/lives.svg`. Needs SciPy and Matplotlib.
+lives that answer the questions, and `--only inborn` those and that outcome. Prints the tables and writes them to
+`outcomes/report.md`, all numbers to `outcomes/outcomes.csv` and a chart of the lives to `outcomes/lives.svg`. Needs
+SciPy and Matplotlib.
 """
 
 import argparse
@@ -46,6 +47,7 @@ SCENES = {
     "damage": "scenario.0.damage=0.1",  # share of the springs that are lost around a random place
 }
 MOVED = ("evaluations=200", "spring_evaluations=0", "verify=0")  # of evolution in another scene
+OUTCOMES = ["lives", "moved", "signal", "stranger", "inborn", "diversity"]
 MARKS = {"artefact", "passive"}
 RUNS_MOVED, RUNS_OF_SIGNAL, RUNS_COMPARED = 20, 10, 20  # of each arm: the first ones
 ROBOTS = 40  # that `signal` measures
@@ -58,7 +60,8 @@ def seed_of(run):
 def alone(arm, run, name, start, *settings):
     """Returns the run in which the best robot of `start` lives LIVES times."""
     settings = arm.settings(*(f"experiment.{setting}" for setting in ALONE), *settings)
-    return Continuation(f"lives/{arm.name}/{run.name}/{name}", arm.experiment, settings, start, 2 * OTHER_SEED + seed_of(run))
+    seed = 2 * OTHER_SEED + seed_of(run)
+    return Continuation(f"lives/{arm.name}/{run.name}/{name}", arm.experiment, settings, start, seed)
 
 
 class Lives:
@@ -190,8 +193,10 @@ class Study:
         return moved
 
     def each(self, kind, count, measure):
-        """Returns what `measure` returns of the first `count` runs of each arm, by arm and run."""
-        with concurrent.futures.ThreadPoolExecutor(self.program.jobs) as pool:
+        """Returns what `measure` returns on the CPU of the first `count` runs of each arm, by arm and run."""
+        # One process for each robot: no GPU is worth its start, and the contexts of many fill its memory.
+        os.environ["CUDA_VISIBLE_DEVICES"] = ""
+        with concurrent.futures.ThreadPoolExecutor(min(self.program.jobs, os.cpu_count())) as pool:
             begun = {
                 (arm.name, run.name): pool.submit(
                     stored, self.out / "rows" / kind / arm.name / f"{run.name}.json", functools.partial(measure, arm, run)
@@ -247,7 +252,9 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=pathlib.Path, help="of the comparison, that is, --out of tools/compare")
     parser.add_argument("--jobs", metavar="N", type=positive, default=1, help="measurements at once (1)")
-    parser.add_argument("--only", choices=["lives"], help="measure nothing else")
+    parser.add_argument(
+        "--only", nargs="+", choices=OUTCOMES, default=OUTCOMES, help="measure nothing but these and the lives"
+    )
     parser.add_argument("--repetition", action="store_true", help="answer the questions of a repetition")
     given = parser.parse_args()
     program = Program(os.environ.get("EVODEVO_PROGRAM", "evodevo"), given.jobs)
@@ -258,30 +265,31 @@ def main():
         "Distance of the best robot in lives to come": distances,
         "Share of the distance that is left without development": shares,
     }
-    if not given.only:
-        known |= {
-            f"Evolution goes on with {scene}" if scene != "slope" else "Evolution goes on on a slope": by_arm(
-                {(arm, run): each.numbers() for (arm, run, where), each in moved if where == scene}
-            )
-            for moved in [list(study.moved().items())]
-            for scene in SCENES
-        }
+    if "moved" in given.only:
+        moved = study.moved()
+        for scene in SCENES:
+            title = f"Evolution goes on with {scene}" if scene != "slope" else "Evolution goes on on a slope"
+            there = {(arm, run): each.numbers() for (arm, run, where), each in moved.items() if where == scene}
+            known[title] = by_arm(there)
+    if "signal" in given.only:
         signal = study.each("signal", RUNS_OF_SIGNAL, lambda arm, run: signal_of(program, study.start(arm, run)))
         known["What repeats, and what children inherit"] = {
             arm: {run: told_of_signal(numbers) for run, numbers in runs.items()} for arm, runs in signal.items()
         }
-        for title, kind, count, measure in (
-            ("Development of a stranger", "stranger", None, bodies.with_edits_of_a_stranger),
-            ("Edits that ancestors had", "inborn", None, bodies.edits_of_ancestors),
-            ("Diversity among similar genotypes", "diversity", RUNS_COMPARED, bodies.diversity),
-        ):
+    for title, kind, count, measure in (
+        ("Development of a stranger", "stranger", None, bodies.with_edits_of_a_stranger),
+        ("Edits that ancestors had", "inborn", None, bodies.edits_of_ancestors),
+        ("Diversity among similar genotypes", "diversity", RUNS_COMPARED, bodies.diversity),
+    ):
+        if kind in given.only:
             known[title] = study.each(kind, count, functools.partial(measure, program, study.start))
     study.out.mkdir(exist_ok=True)
     write_csv(known.items(), study.out / "outcomes.csv")
     charts.save(figures.figure(distances, shares), study.out / "lives.svg")
     kind = "repetition" if given.repetition else "study"
     answered = answers.section(distances, shares, after(0), after(kept.PARTS), kind)
-    text = "\n".join([answered, *(report(title, of_arms, SHARES) for title, of_arms in known.items())])
+    tables = [report(title, of_arms, SHARES) for title, of_arms in known.items()]
+    text = "\n".join([answered, answers.beside(distances), *tables])
     (study.out / "report.md").write_text(text)
     print(text)
 
