@@ -113,7 +113,7 @@ struct Failure {
   bool varies = false;  ///< whether the reasons of other individuals in the group differ from it after the first digit
 };
 
-/// A number of what selection sees (signal/measuring.hpp).
+/// A number of what selection sees, as `evodevo signal` measures it.
 struct SignalNumber {
   std::string population;  ///< whose: "random", "last" or "champion"
   std::string quantity;    ///< such as "repeatability"

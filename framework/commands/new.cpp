@@ -3,13 +3,11 @@
 #include <boost/dll/runtime_symbol_info.hpp>
 #include <cctype>
 #include <fstream>
-#include <iostream>
 #include <sstream>
 
 #include "base/output_file.hpp"
 #include "base/text.hpp"
 #include "commands/commands.hpp"
-#include "commands/shell/options.hpp"
 #include "commands/shell/output/notices.hpp"
 #include "operators/loader.hpp"
 

@@ -19,8 +19,8 @@ class FrontVerification {
       : experiment_(experiment), evaluator_(evaluator), provenances_(provenances) {}
 
   /// Verifies the individuals on the front of `everyone`. Those that do not hold get the status `artefact`, `lucky` or
-  /// and lose their scores, so that others come to the front, until all that are on it hold. Returns the refusals, in
-  /// the order in which they were made; none if the experiment does not ask for verification.
+  /// `passive` and lose their scores, so that others come to the front, until all that are on it hold. Returns the
+  /// refusals, in the order in which they were made; none if the experiment does not ask for verification.
   ///
   /// Copies (copies_in()) are not verified, but they come to the front if the individual that they equal is refused.
   /// Individuals whose provenance the evaluator does not have are not verified, because the new life might differ from

@@ -1,5 +1,7 @@
 // Estimates of what repeats in scores and of what children inherit: on numbers whose answer is published or follows
 // from how they are made, and on populations whose scores are a gene and noise.
+#include "report/signal.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,7 +12,6 @@
 #include "base/philox.hpp"
 #include "signal/estimates.hpp"
 #include "signal/measuring.hpp"
-#include "report/signal.hpp"
 #include "support/lives.hpp"
 #include "support/messages.hpp"
 #include "support/planted.hpp"

@@ -1,6 +1,5 @@
 #include "conformance/behaviours.hpp"
 
-#include <cmath>
 #include <limits>
 
 #include "base/philox.hpp"

@@ -2,7 +2,9 @@
 
 #include <dlfcn.h>
 
+#include <algorithm>
 #include <ctime>
+#include <optional>
 
 #include "base/text.hpp"
 #include "conformance/exports.hpp"

@@ -1,8 +1,6 @@
 // Test cases for operators of one kind.
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numeric>
 #include <set>
 
 #include "base/genome_sections.hpp"

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <set>
 
 #include "base/genome_sections.hpp"
 #include "base/philox.hpp"
-#include "base/text.hpp"
 #include "conformance/behaviours.hpp"
 #include "conformance/tables.hpp"
 #include "evodevo/neat.hpp"

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "life/evaluation.hpp"
+#include "life/life.hpp"
 
 namespace evodevo {
 

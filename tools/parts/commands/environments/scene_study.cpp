@@ -3,6 +3,7 @@
 #include "environments/body_distance.hpp"
 #include "experiment/device.hpp"
 #include "life/birth.hpp"
+#include "life/evaluation.hpp"
 
 namespace evodevo {
 namespace {

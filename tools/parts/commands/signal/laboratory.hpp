@@ -1,7 +1,6 @@
 // Lets robots of an experiment, and children that its variation makes of them, live in lives that selection never sees.
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 
