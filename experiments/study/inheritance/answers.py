@@ -118,20 +118,21 @@ def section(distances, shares, first, last, kind="study"):
 
 def superiority(runs, way, others):
     """Returns A12 of the distances of an arm, with its interval, against `others`, with the draws of their runs."""
-    a, b = ([run[key] for run in some.values() if run[key] is not None] for some, key in ((runs, way), (others, "same draws")))
+    pairs = ((runs, way), (others, "same draws"))
+    a, b = ([run[key] for run in some.values() if run[key] is not None] for some, key in pairs)
     if not a or not b:
         return "-"
-    a12 = inference.superiority(a, b)
-    return "{:.2f} ({:.2f} to {:.2f})".format(a12, *inference.superiority_interval(a12, len(a), len(b)))
+    test = questions.Test(a, b)
+    return "{:.2f} ({:.2f} to {:.2f})".format(test.a12, *test.interval)
 
 
 def beside(distances):
     """Returns the section that tells each arm's A12 against random search and against no development."""
     others = [name for name in BESIDE if name in distances]
+    pairs = [(way, other) for other in others for way in ("same draws", "new draws")]
     lines = [
-        [f"`{arm}`", *(superiority(runs, way, distances[other]) for other in others for way in ("same draws", "new draws"))]
-        for arm, runs in distances.items()
+        [f"`{arm}`", *(superiority(runs, way, distances[other]) for way, other in pairs)] for arm, runs in distances.items()
     ]
-    header = ["", *(f"{way}, against `{other}`" for other in others for way in ("same draws", "new draws"))]
+    header = ["", *(f"{way}, against `{other}`" for way, other in pairs)]
     title = "## A12 of the distances in lives to come"
     return f"{title}\n\nOf all runs, not tested, with {INTERVAL}s.\n\n{table(header, lines)}"

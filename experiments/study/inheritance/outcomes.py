@@ -47,7 +47,6 @@ SCENES = {
     "damage": "scenario.0.damage=0.1",  # share of the springs that are lost around a random place
 }
 MOVED = ("evaluations=200", "spring_evaluations=0", "verify=0")  # of evolution in another scene
-OUTCOMES = ["lives", "moved", "signal", "stranger", "inborn", "diversity"]
 MARKS = {"artefact", "passive"}
 RUNS_MOVED, RUNS_OF_SIGNAL, RUNS_COMPARED = 20, 10, 20  # of each arm: the first ones
 ROBOTS = 40  # that `signal` measures
@@ -138,7 +137,8 @@ def stored(row, measure):
     return json.loads(row.read_text())
 
 
-def signal_of(program, start):
+def signal_of(program, start_of, arm, run):
+    start = start_of(arm, run)
     return program.json("signal", start, "--robots", ROBOTS, "--json")["numbers"] if start.exists() else None
 
 
@@ -154,6 +154,17 @@ def told_of_signal(numbers):
         for each in numbers
         if (each["quantity"], each["of"]) in told and each["scale"] == "rank" and each["value"] is not None
     }
+
+
+# What is measured of each run alone, on the CPU: its title, of how many runs of each arm (None: of all), how, and what
+# the report tells of it.
+OF_EACH_RUN = {
+    "signal": ("What repeats, and what children inherit", RUNS_OF_SIGNAL, signal_of, told_of_signal),
+    "stranger": ("Development of a stranger", None, bodies.with_edits_of_a_stranger, dict),
+    "inborn": ("Edits that ancestors had", None, bodies.edits_of_ancestors, dict),
+    "diversity": ("Diversity among similar genotypes", RUNS_COMPARED, bodies.diversity, dict),
+}
+OUTCOMES = ["lives", "moved", *OF_EACH_RUN]
 
 
 class Study:
@@ -192,19 +203,21 @@ class Study:
         self.program.make(self.out, [each.after for each in moved.values()])
         return moved
 
-    def each(self, kind, count, measure):
-        """Returns what `measure` returns on the CPU of the first `count` runs of each arm, by arm and run."""
-        # One process for each robot: no GPU is worth its start, and the contexts of many fill its memory.
-        os.environ["CUDA_VISIBLE_DEVICES"] = ""
-        with concurrent.futures.ThreadPoolExecutor(min(self.program.jobs, os.cpu_count())) as pool:
+    def of_each_run(self, kind):
+        """Returns what is told of OF_EACH_RUN[kind], by arm and run."""
+        _, count, measure, told = OF_EACH_RUN[kind]
+        program = self.program.without_gpus()
+        with concurrent.futures.ThreadPoolExecutor(program.jobs) as pool:
             begun = {
                 (arm.name, run.name): pool.submit(
-                    stored, self.out / "rows" / kind / arm.name / f"{run.name}.json", functools.partial(measure, arm, run)
+                    stored,
+                    self.out / "rows" / kind / arm.name / f"{run.name}.json",
+                    functools.partial(measure, program, self.start, arm, run),
                 )
                 for arm in self.arms
                 for run in arm.runs[:count]
             }
-            return by_arm({key: value for key, future in begun.items() if (value := future.result()) is not None})
+            return by_arm({key: told(value) for key, future in begun.items() if (value := future.result()) is not None})
 
 
 def by_arm(numbers):
@@ -257,8 +270,7 @@ def main():
     )
     parser.add_argument("--repetition", action="store_true", help="answer the questions of a repetition")
     given = parser.parse_args()
-    program = Program(os.environ.get("EVODEVO_PROGRAM", "evodevo"), given.jobs)
-    study = Study(given.folder, program)
+    study = Study(given.folder, Program(os.environ.get("EVODEVO_PROGRAM", "evodevo"), given.jobs))
     study.keep()
     distances, shares = told_of_lives(study, study.lives())
     known = {
@@ -271,18 +283,9 @@ def main():
             title = f"Evolution goes on with {scene}" if scene != "slope" else "Evolution goes on on a slope"
             there = {(arm, run): each.numbers() for (arm, run, where), each in moved.items() if where == scene}
             known[title] = by_arm(there)
-    if "signal" in given.only:
-        signal = study.each("signal", RUNS_OF_SIGNAL, lambda arm, run: signal_of(program, study.start(arm, run)))
-        known["What repeats, and what children inherit"] = {
-            arm: {run: told_of_signal(numbers) for run, numbers in runs.items()} for arm, runs in signal.items()
-        }
-    for title, kind, count, measure in (
-        ("Development of a stranger", "stranger", None, bodies.with_edits_of_a_stranger),
-        ("Edits that ancestors had", "inborn", None, bodies.edits_of_ancestors),
-        ("Diversity among similar genotypes", "diversity", RUNS_COMPARED, bodies.diversity),
-    ):
+    for kind in OF_EACH_RUN:
         if kind in given.only:
-            known[title] = study.each(kind, count, functools.partial(measure, program, study.start))
+            known[OF_EACH_RUN[kind][0]] = study.of_each_run(kind)
     study.out.mkdir(exist_ok=True)
     write_csv(known.items(), study.out / "outcomes.csv")
     charts.save(figures.figure(distances, shares), study.out / "lives.svg")

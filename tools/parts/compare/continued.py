@@ -3,6 +3,7 @@
 import contextlib
 import dataclasses
 import json
+import os
 import pathlib
 import subprocess
 import sys
@@ -42,12 +43,19 @@ class Continuation:
 class Program:
     """The program evodevo, of which up to `jobs` processes or runs work at once."""
 
-    def __init__(self, path, jobs):
-        self._path, self.jobs = path, jobs
+    def __init__(self, path, jobs, gpus=True):
+        self._path, self.jobs, self._gpus = path, jobs, gpus
+
+    def without_gpus(self):
+        """Returns the program for commands that simulate a few robots: no GPU is worth its start then, and the contexts
+        of many processes fill its memory."""
+        return Program(self._path, min(self.jobs, os.cpu_count()), gpus=False)
 
     def call(self, *words):
         """Returns what a command prints."""
-        return subprocess.run([self._path, *map(str, words)], check=True, stdout=subprocess.PIPE, text=True).stdout
+        command = [self._path, *map(str, words)]
+        environment = os.environ if self._gpus else os.environ | {"CUDA_VISIBLE_DEVICES": ""}
+        return subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True, env=environment).stdout
 
     def json(self, *words):
         """Returns what a command prints, as JSON."""
