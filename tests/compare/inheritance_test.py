@@ -1,5 +1,6 @@
 """Tests the scripts that measure the outcomes of experiments/study/inheritance, with short runs of small robots."""
 
+import collections
 import csv
 import json
 import math
@@ -66,8 +67,16 @@ class Outcomes(InOwnFolder):
         chart = (self.folder / "out" / "outcomes" / "lives.svg").read_text()
         for arm in ("evo", "individual", "stress"):
             self.assertIn(f">{arm}<", chart)
-        repeats = [key for key in told if key[3] == "repeatability of one life, random"]
-        self.assertEqual(len(repeats), 6)
+        of_signal = collections.Counter(key[3] for key in told if key[3].endswith(", random"))
+        self.assertEqual(
+            of_signal,
+            {
+                "repeatability of one life, random": 6,
+                "repeatability of the score, random": 6,
+                "repeatability with new draws, random": 4,  # of those that develop
+                "heritability, random": 6,
+            },
+        )
         for key, value in told.items():
             self.assertTrue(math.isfinite(value), key)
             if key[2] in ("Edits that ancestors had",) and key[3] != "ancestors":
@@ -125,7 +134,11 @@ class Answers(unittest.TestCase):
 
     def test_nothing_is_answered_before_all_runs_are_there(self):
         arms = {arm: runs(*self.LOW) for arm in (*ARMS, "stress")} | {"evo": runs(*self.LOW[:19])}
-        self.assertIn("`evo` has 19.", answers.section(arms, {}, "first", "last", "repetition"))
+        text = answers.section(arms, {}, "first", "last", "repetition")
+        self.assertIn("`evo` has 19.", text)
+        compared = [line for line in text.splitlines() if line.endswith(" | - |")]
+        self.assertEqual(len(compared), len(answers.QUESTIONS))
+        self.assertNotIn("|", answers.section(arms | {"evo": {}}, {}, "first", "last", "repetition"))
 
     def test_shares_of_too_little_are_not_told(self):
         self.assertIsNone(answers.share(0.1, 0.4))

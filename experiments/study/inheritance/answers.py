@@ -73,17 +73,21 @@ def missing(distances, runs):
 
 
 def section(distances, shares, first, last, kind="study"):
-    """Returns the section with the answers, once all runs have been measured. `distances` and `shares`: of each arm and
-    run; `first` and `last`: the columns of `shares` that are compared. A repetition asks nothing about learning."""
+    """Returns the section with the answers, which are there once all runs have been measured; before, what is there is
+    compared. `distances` and `shares`: of each arm and run; `first` and `last`: the columns of `shares` that are compared.
+    A repetition asks nothing about learning."""
+    title = "## Answers\n\n"
     if lacking := missing(distances, RUNS[kind]):
-        return f"## Answers\n\nNone yet: of the {RUNS[kind]} runs of each arm, {', '.join(lacking)}.\n"
+        title += f"None yet: of the {RUNS[kind]} runs of each arm, {', '.join(lacking)}.\n\n"
+    if any(not distances.get(arm) for question in QUESTIONS for arm in question[1:]):
+        return title.rstrip("\n") + "\n"
     held, every = [], []
     for _, a, b in QUESTIONS:
         samples = held_and_all(distances[a]), held_and_all(distances[b])
         held.append(questions.Test(*(sample[0] for sample in samples)))
         every.append(questions.Test(*(sample[1] for sample in samples)))
     ps = [[test.p for test in some] for some in (held, every)]
-    if kind == "study":
+    if kind == "study" and not lacking:
         changes = changes_of(shares[LEARNT[1]], distances[LEARNT[1]], first, last)
         tested = [signed_rank_test(some) for some in changes]
         ps = [[*some, p] for some, (p, _) in zip(ps, tested)]
@@ -101,12 +105,12 @@ def section(distances, shares, first, last, kind="study"):
                 "{:.2f} to {:.2f}".format(*held[i].interval),
                 f"{holm_held[i]:.2g}",
                 f"{holm_all[i]:.2g}",
-                {"better": "yes: more", "worse": "yes: less"}.get(answer, answer),
+                "-" if lacking else {"better": "yes: more", "worse": "yes: less"}.get(answer, answer),
             ]
         )
     header = ["", "arms", "held", "medians", "A12", INTERVAL, "p (Holm), held", "p (Holm), all", "answer"]
-    text = f"## Answers\n\n{table(header, lines)}"
-    if kind == "study":
+    text = title + table(header, lines)
+    if kind == "study" and not lacking:
         answer = inborn(changes[0], (holm_held[-1], holm_all[-1]), [sign for _, sign in tested])
         text += (
             f"\n{LEARNT[0]} In {len(changes[0])} runs of `{LEARNT[1]}` that held, the share of the distance that is left "

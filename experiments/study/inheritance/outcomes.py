@@ -147,7 +147,8 @@ def told_of_signal(numbers):
     told = {
         ("repeatability", "one life"): "repeatability of one life",
         ("repeatability", "all lives"): "repeatability of the score",
-        ("heritability", "all"): "heritability",
+        ("repeatability", "new draws"): "repeatability with new draws",
+        ("heritability", "all children"): "heritability",
     }
     return {
         f"{told[each['quantity'], each['of']]}, {each['population']}": each["value"]
