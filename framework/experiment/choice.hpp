@@ -5,7 +5,6 @@
 #include <array>
 #include <string>
 #include <string_view>
-#include <utility>
 
 #include "evodevo/parameters.hpp"
 
@@ -20,13 +19,12 @@ constexpr std::string_view name_of(Enum value) {
   return names_of<Enum>.at(static_cast<std::size_t>(value));
 }
 
-/// Declares an option to a visitor of parameters. The visitor may change `value`.
+/// Declares an option, whose value may be changed.
 template <class Enum>
-void choice(Parameters& visitor, Enum& value, std::string_view key, std::string_view text) {
+void choice(Parameters& parameters, Enum& value, std::string_view key, std::string_view text) {
   constexpr auto& names = names_of<Enum>;
   std::string name(name_of(value));
-  [&]<std::size_t... I>(std::index_sequence<I...>) { visitor.choice(name, key, {names[I]...}, text); }
-  (std::make_index_sequence<names.size()>());
+  parameters.declare({key, text, parameter::Choice{name, names}});
   for (std::size_t i = 0; i < names.size(); ++i)
     if (names[i] == name) value = static_cast<Enum>(i);
 }

@@ -160,86 +160,97 @@ const toml::array& TomlReader::three(const toml::node& node, std::string_view na
   return *array;
 }
 
-void TomlReader::real(double& value, std::string_view name, Range range, std::string_view) {
-  read(name, [&](const toml::node& node) { value = number(node, name, range); });
+void TomlReader::declare(const Parameter& parameter) {
+  std::visit([&](const auto& variable) { set(parameter.name, variable); }, parameter.variable);
 }
 
-void TomlReader::integer(std::int64_t& value, std::string_view name, Range range, std::string_view) {
-  read(name, [&](const toml::node& node) { value = whole_number(node, name, range); });
+void TomlReader::set(std::string_view name, const parameter::Real& real) {
+  read(name, [&](const toml::node& node) { real.value = number(node, name, real.range); });
 }
 
-void TomlReader::flag(bool& value, std::string_view name, std::string_view) {
+void TomlReader::set(std::string_view name, const parameter::Integer& integer) {
+  read(name, [&](const toml::node& node) { integer.value = whole_number(node, name, integer.range); });
+}
+
+void TomlReader::set(std::string_view name, const parameter::Flag& flag) {
   read(name, [&](const toml::node& node) {
     if (!node.is_boolean()) fail_at(node, name, "expected true or false");
-    value = node.value<bool>().value();
+    flag.value = node.value<bool>().value();
   });
 }
 
-void TomlReader::choice(std::string& value, std::string_view name, std::initializer_list<std::string_view> options,
-                        std::string_view) {
+void TomlReader::set(std::string_view name, const parameter::Choice& choice) {
   read(name, [&](const toml::node& node) {
-    const std::vector<std::string> names(options.begin(), options.end());
+    const std::vector<std::string> names(choice.options.begin(), choice.options.end());
     if (!node.is_string()) fail_at(node, name, "expected one of " + joined(names));
     const std::string chosen = node.value<std::string>().value();
     if (std::find(names.begin(), names.end(), chosen) == names.end())
       fail_at(node, name, "is not an option" + suggestion(chosen, names));
-    value = chosen;
+    choice.value = chosen;
   });
 }
 
-void TomlReader::vector(Vec3& value, std::string_view name, Range range, std::string_view) {
+void TomlReader::set(std::string_view name, const parameter::Vector& vector) {
   read(name, [&](const toml::node& node) {
     const toml::array& array = three(node, name);
-    value = {number(array[0], name, range), number(array[1], name, range), number(array[2], name, range)};
+    vector.value = {number(array[0], name, vector.range), number(array[1], name, vector.range),
+                    number(array[2], name, vector.range)};
   });
 }
 
-void TomlReader::vector_or_choice(Vec3& value, std::string& word, std::string_view name, Range range,
-                                  std::initializer_list<std::string_view> options, std::string_view text) {
+void TomlReader::set(std::string_view name, const parameter::VectorOrChoice& either) {
   read(name, [&](const toml::node& node) {
-    if (node.is_string()) return choice(word, name, options, text);
+    if (node.is_string()) return set(name, parameter::Choice{either.word, either.options});
     if (!node.is_array())
       fail_at(node, name,
-              "expected three numbers, or one of " + joined(std::vector<std::string>(options.begin(), options.end())));
-    vector(value, name, range, text);
-    word.clear();
+              "expected three numbers, or one of " +
+                  joined(std::vector<std::string>(either.options.begin(), either.options.end())));
+    set(name, parameter::Vector{either.value, either.range});
+    either.word.clear();
   });
 }
 
-void TomlReader::counts(std::array<std::int64_t, 3>& value, std::string_view name, Range range, std::string_view) {
+void TomlReader::set(std::string_view name, const parameter::Counts& counts) {
   read(name, [&](const toml::node& node) {
     const toml::array& array = three(node, name);
-    value = {whole_number(array[0], name, range), whole_number(array[1], name, range),
-             whole_number(array[2], name, range)};
+    counts.value = {whole_number(array[0], name, counts.range), whole_number(array[1], name, counts.range),
+                    whole_number(array[2], name, counts.range)};
   });
 }
 
-void TomlReader::optional_real(std::optional<double>& value, std::string_view name, Range range, std::string_view) {
-  read(name, [&](const toml::node& node) { value = number(node, name, range); });
+void TomlReader::set(std::string_view name, const parameter::OptionalReal& real) {
+  read(name, [&](const toml::node& node) {
+    if (real.none.empty() || !node.is_string())
+      real.value = number(node, name, real.range);
+    else if (node.value<std::string>() == real.none)
+      real.value.reset();
+    else
+      fail_at(node, name, "expected a number or \"" + std::string(real.none) + "\"");
+  });
 }
 
-void TomlReader::reals(std::vector<double>& value, std::string_view name, Range range, std::string_view) {
+void TomlReader::set(std::string_view name, const parameter::Reals& reals) {
   read(name, [&](const toml::node& node) {
     const toml::array* array = node.as_array();
     if (array == nullptr || array->size() > most_numbers)
-      fail_at(node, name, expected("a list of at most " + std::to_string(most_numbers) + " numbers", range));
+      fail_at(node, name, expected("a list of at most " + std::to_string(most_numbers) + " numbers", reals.range));
     std::vector<double> numbers;
-    for (const toml::node& item : *array) numbers.push_back(number(item, name, range));
-    value = std::move(numbers);
+    for (const toml::node& item : *array) numbers.push_back(number(item, name, reals.range));
+    reals.value = std::move(numbers);
   });
 }
 
-void TomlReader::text(std::string& value, std::string_view name, std::string_view) {
+void TomlReader::set(std::string_view name, const parameter::Text& text) {
   read(name, [&](const toml::node&) {
-    const std::string given = text(name);
+    const std::string given = this->text(name);
     if (given.size() > most_text_bytes)
       fail(name, "expected a text of at most " + std::to_string(most_text_bytes) + " bytes");
-    value = given;
+    text.value = given;
   });
 }
 
-void TomlReader::file(InputFile& value, std::string_view name, std::string_view) {
-  attempt([&] { value = named_file(text(name, value.path.c_str()), name); });
+void TomlReader::set(std::string_view name, const parameter::File& file) {
+  attempt([&] { file.value = named_file(text(name, file.value.path.c_str()), name); });
 }
 
 InputFile TomlReader::named_file(const std::string& path, std::string_view name) const {
@@ -260,10 +271,10 @@ InputFile TomlReader::named_file(const std::string& path, std::string_view name)
   return file;
 }
 
-void TomlReader::materials(std::vector<std::string>& value, std::string_view name, std::string_view) {
+void TomlReader::set(std::string_view name, const parameter::Materials& materials) {
   attempt([&] {
     std::vector<std::string> named = texts(name);
-    if (named.empty()) named = value;
+    if (named.empty()) named = materials.value;
     for (const std::string& material : named) {
       if (std::find(references_.materials->begin(), references_.materials->end(), material) ==
           references_.materials->end())
@@ -272,7 +283,7 @@ void TomlReader::materials(std::vector<std::string>& value, std::string_view nam
       if (std::count(named.begin(), named.end(), material) > 1)
         fail(name, "names \"" + material + "\" twice; remove one of the two");
     }
-    value = std::move(named);
+    materials.value = std::move(named);
   });
 }
 
@@ -284,17 +295,6 @@ void TomlReader::require(bool holds, std::string_view name, std::string_view tex
     if (errors_ == nullptr) throw;
     failed_conditions_.push_back(error);
   }
-}
-
-void TomlReader::real_or_auto(std::optional<double>& value, std::string_view name, Range range, std::string_view) {
-  read(name, [&](const toml::node& node) {
-    if (!node.is_string())
-      value = number(node, name, range);
-    else if (node.value<std::string>() == "auto")
-      value.reset();
-    else
-      fail_at(node, name, "expected a number or \"auto\"");
-  });
 }
 
 std::string TomlReader::text(std::string_view name, const char* fallback) {

@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "evodevo/parameters.hpp"
 #include "experiment/config_errors.hpp"
-#include "experiment/settings_visitor.hpp"
 
 namespace evodevo {
 
@@ -42,33 +42,20 @@ struct References {
   FileContents* files = nullptr;  ///< gets the contents of files that are read, if not null
 };
 
-/// A visitor that reads variables from a TOML table. If a key is absent or wrong, its variable keeps the default. If
+/// Reads declared variables from a TOML table. If a key is absent or wrong, its variable keeps the default. If
 /// errors are collected, reading goes on after an error; otherwise the first error is thrown. To report an error is to
 /// collect it, or to throw it if errors are not collected.
-class TomlReader final : public SettingsVisitor {
+class TomlReader final : public Parameters {
  public:
   /// `path` is the table's name in messages, such as "scene.floor"; empty for the top level. `errors` is the collector
   /// of errors, or null.
   TomlReader(const toml::table& table, std::string path, References references = {}, ErrorCollector* errors = nullptr)
       : table_(table), path_(std::move(path)), references_(std::move(references)), errors_(errors) {}
 
-  void real(double& value, std::string_view name, Range range, std::string_view text) override;
-  void integer(std::int64_t& value, std::string_view name, Range range, std::string_view text) override;
-  void flag(bool& value, std::string_view name, std::string_view text) override;
-  void choice(std::string& value, std::string_view name, std::initializer_list<std::string_view> options,
-              std::string_view text) override;
-  void vector(Vec3& value, std::string_view name, Range range, std::string_view text) override;
-  void vector_or_choice(Vec3& value, std::string& word, std::string_view name, Range range,
-                        std::initializer_list<std::string_view> options, std::string_view text) override;
-  void counts(std::array<std::int64_t, 3>& value, std::string_view name, Range range, std::string_view text) override;
-  void optional_real(std::optional<double>& value, std::string_view name, Range range, std::string_view text) override;
-  void reals(std::vector<double>& value, std::string_view name, Range range, std::string_view text) override;
-  void text(std::string& value, std::string_view name, std::string_view text) override;
-  void file(InputFile& value, std::string_view name, std::string_view text) override;
-  void materials(std::vector<std::string>& value, std::string_view name, std::string_view text) override;
+  void declare(const Parameter& parameter) override;
   void require(bool holds, std::string_view name, std::string_view text) override;
-  void real_or_auto(std::optional<double>& value, std::string_view name, Range range, std::string_view text) override;
 
+  using Parameters::text;
   /// Returns the string of a key, or `fallback` if the key is absent. Throws ConfigError if the key is absent and
   /// `fallback` is null.
   std::string text(std::string_view name, const char* fallback = nullptr);
@@ -120,6 +107,19 @@ class TomlReader final : public SettingsVisitor {
   std::string full_name(std::string_view name) const;
 
  private:
+  void set(std::string_view name, const parameter::Real& real);
+  void set(std::string_view name, const parameter::Integer& integer);
+  void set(std::string_view name, const parameter::Flag& flag);
+  void set(std::string_view name, const parameter::Choice& choice);
+  void set(std::string_view name, const parameter::Vector& vector);
+  void set(std::string_view name, const parameter::VectorOrChoice& either);
+  void set(std::string_view name, const parameter::Counts& counts);
+  void set(std::string_view name, const parameter::OptionalReal& real);
+  void set(std::string_view name, const parameter::Reals& reals);
+  void set(std::string_view name, const parameter::Text& text);
+  void set(std::string_view name, const parameter::File& file);
+  void set(std::string_view name, const parameter::Materials& materials);
+
   const toml::node* look_up(std::string_view name);
   void know(std::string_view name);
   /// Calls `take` with the node of a key, if the table has it; collects an error that it throws.

@@ -2,62 +2,51 @@
 
 namespace evodevo {
 
-void TomlWriter::real(double& value, std::string_view name, Range, std::string_view) { add(name, value); }
-
-void TomlWriter::integer(std::int64_t& value, std::string_view name, Range, std::string_view) { add(name, value); }
-
-void TomlWriter::flag(bool& value, std::string_view name, std::string_view) { add(name, value); }
-
-void TomlWriter::choice(std::string& value, std::string_view name, std::initializer_list<std::string_view>,
-                        std::string_view) {
-  add(name, value);
+void TomlWriter::declare(const Parameter& parameter) {
+  std::visit([&](const auto& variable) { write(parameter.name, variable); }, parameter.variable);
 }
 
-void TomlWriter::vector(Vec3& value, std::string_view name, Range, std::string_view) {
-  add(name, toml::array{value.x, value.y, value.z});
+template <class Variable>
+void TomlWriter::write(std::string_view name, const Variable& variable) {
+  add(name, variable.value);
 }
 
-void TomlWriter::vector_or_choice(Vec3& value, std::string& word, std::string_view name, Range range,
-                                  std::initializer_list<std::string_view> options, std::string_view text) {
-  if (word.empty())
-    vector(value, name, range, text);
+void TomlWriter::write(std::string_view name, const parameter::Vector& vector) {
+  add(name, toml::array{vector.value.x, vector.value.y, vector.value.z});
+}
+
+void TomlWriter::write(std::string_view name, const parameter::VectorOrChoice& either) {
+  if (either.word.empty())
+    write(name, parameter::Vector{either.value, either.range});
   else
-    choice(word, name, options, text);
+    add(name, either.word);
 }
 
-void TomlWriter::counts(std::array<std::int64_t, 3>& value, std::string_view name, Range, std::string_view) {
-  add(name, toml::array{value[0], value[1], value[2]});
+void TomlWriter::write(std::string_view name, const parameter::Counts& counts) {
+  add(name, toml::array{counts.value[0], counts.value[1], counts.value[2]});
 }
 
-void TomlWriter::optional_real(std::optional<double>& value, std::string_view name, Range, std::string_view) {
-  if (value) add(name, *value);
+void TomlWriter::write(std::string_view name, const parameter::OptionalReal& real) {
+  if (real.value)
+    add(name, *real.value);
+  else if (!real.none.empty())
+    add(name, real.none);
 }
 
-void TomlWriter::reals(std::vector<double>& value, std::string_view name, Range, std::string_view) {
+void TomlWriter::write(std::string_view name, const parameter::Reals& reals) {
   toml::array numbers;
-  for (const double number : value) numbers.push_back(number);
+  for (const double number : reals.value) numbers.push_back(number);
   add(name, std::move(numbers));
 }
 
-void TomlWriter::text(std::string& value, std::string_view name, std::string_view) { add(name, value); }
-
-void TomlWriter::file(InputFile& value, std::string_view name, std::string_view) {
-  if (!value.path.empty()) add(name, value.path);
+void TomlWriter::write(std::string_view name, const parameter::File& file) {
+  if (!file.value.path.empty()) add(name, file.value.path);
 }
 
-void TomlWriter::materials(std::vector<std::string>& value, std::string_view name, std::string_view) {
+void TomlWriter::write(std::string_view name, const parameter::Materials& materials) {
   toml::array names;
-  for (const std::string& material : value) names.push_back(material);
+  for (const std::string& material : materials.value) names.push_back(material);
   add(name, std::move(names));
-}
-
-void TomlWriter::require(bool, std::string_view, std::string_view) {}
-
-void TomlWriter::real_or_auto(std::optional<double>& value, std::string_view name, Range, std::string_view) {
-  if (value)
-    add(name, *value);
-  else
-    add(name, "auto");
 }
 
 }  // namespace evodevo

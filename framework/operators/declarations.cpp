@@ -9,56 +9,22 @@
 namespace evodevo {
 namespace {
 
+std::vector<double> numbers(double value) { return {value}; }
+std::vector<double> numbers(std::int64_t value) { return {static_cast<double>(value)}; }
+std::vector<double> numbers(const Vec3& value) { return {value.x, value.y, value.z}; }
+std::vector<double> numbers(const std::array<std::int64_t, 3>& value) { return {value.begin(), value.end()}; }
+std::vector<double> numbers(const std::optional<double>& value) {
+  return value ? std::vector<double>{*value} : std::vector<double>{};
+}
+std::vector<double> numbers(const std::vector<double>& value) { return value; }
+
 class DeclarationCheck final : public Parameters {
  public:
   std::vector<std::string> wrong_defaults, required, taken_names, faults;
 
-  void real(double& value, std::string_view name, Range range, std::string_view text) override {
-    declare(name, text);
-    check(name, value, range);
-  }
-  void integer(std::int64_t& value, std::string_view name, Range range, std::string_view text) override {
-    declare(name, text);
-    check(name, static_cast<double>(value), range);
-  }
-  void flag(bool&, std::string_view name, std::string_view text) override { declare(name, text); }
-  void choice(std::string& value, std::string_view name, std::initializer_list<std::string_view> options,
-              std::string_view text) override {
-    declare(name, text);
-    check_option(name, value, options);
-  }
-  void vector(Vec3& value, std::string_view name, Range range, std::string_view text) override {
-    declare(name, text);
-    for (const double part : {value.x, value.y, value.z}) check(name, part, range);
-  }
-  void vector_or_choice(Vec3& value, std::string& word, std::string_view name, Range range,
-                        std::initializer_list<std::string_view> options, std::string_view text) override {
-    vector(value, name, range, text);
-    if (!word.empty()) check_option(name, word, options);
-  }
-  void counts(std::array<std::int64_t, 3>& value, std::string_view name, Range range, std::string_view text) override {
-    declare(name, text);
-    for (const std::int64_t part : value) check(name, static_cast<double>(part), range);
-  }
-  void optional_real(std::optional<double>& value, std::string_view name, Range range, std::string_view text) override {
-    declare(name, text);
-    check(name, value.value_or(range.low), range);
-  }
-  void reals(std::vector<double>& value, std::string_view name, Range range, std::string_view text) override {
-    declare(name, text);
-    check(name, range.low, range);
-    for (const double number : value) check(name, number, range);
-  }
-  void text(std::string& value, std::string_view name, std::string_view text) override {
-    declare(name, text);
-    if (value.empty()) unset_.emplace_back(name);
-  }
-  void file(InputFile& value, std::string_view name, std::string_view text) override {
-    declare(name, text);
-    if (value.path.empty()) unset_.emplace_back(name);
-  }
-  void materials(std::vector<std::string>&, std::string_view name, std::string_view text) override {
-    declare(name, text);
+  void declare(const Parameter& parameter) override {
+    check_words(parameter.name, parameter.text);
+    std::visit([&](const auto& variable) { check(parameter.name, variable); }, parameter.variable);
   }
   void require(bool holds, std::string_view name, std::string_view text) override {
     if (holds) return;
@@ -70,7 +36,7 @@ class DeclarationCheck final : public Parameters {
   }
 
  private:
-  void declare(std::string_view name, std::string_view text) {
+  void check_words(std::string_view name, std::string_view text) {
     if (std::find(names_.begin(), names_.end(), name) != names_.end()) fault(name, "is declared twice");
     names_.emplace_back(name);
     if (host_key::is_reserved(name)) taken_names.emplace_back(name);
@@ -79,17 +45,37 @@ class DeclarationCheck final : public Parameters {
       fault(name, "is not described by a sentence that ends with a full stop");
   }
 
-  void check_option(std::string_view name, const std::string& value, std::initializer_list<std::string_view> options) {
+  void check(std::string_view name, const parameter::Choice& choice) {
+    check_option(name, choice.value, choice.options);
+  }
+  void check(std::string_view name, const parameter::VectorOrChoice& either) {
+    check_numbers(name, numbers(either.value), either.range);
+    if (!either.word.empty()) check_option(name, either.word, either.options);
+  }
+  void check(std::string_view name, const parameter::Text& text) {
+    if (text.value.empty()) unset_.emplace_back(name);
+  }
+  void check(std::string_view name, const parameter::File& file) {
+    if (file.value.path.empty()) unset_.emplace_back(name);
+  }
+  template <class Variable>
+  void check(std::string_view name, const Variable& variable) {
+    if constexpr (requires { variable.range; }) check_numbers(name, numbers(variable.value), variable.range);
+  }
+
+  void check_option(std::string_view name, const std::string& value, parameter::Options options) {
     if (std::find(options.begin(), options.end(), value) == options.end())
       wrong_defaults.push_back(std::string(name) + " = \"" + value +
                                "\" is not one of its options; correct the default or the options");
   }
 
-  void check(std::string_view name, double value, Range range) {
-    // written so that NaN fails
-    if (!(value >= range.low && value <= range.high))
-      wrong_defaults.push_back(std::string(name) + " = " + to_text(value) + ", expected " + to_text(range) +
-                               "; correct the default or the range");
+  void check_numbers(std::string_view name, std::vector<double> values, Range range) {
+    if (values.empty()) values = {range.low};  // so that a range without numbers is found
+    for (const double value : values)
+      // written so that NaN fails
+      if (!(value >= range.low && value <= range.high))
+        wrong_defaults.push_back(std::string(name) + " = " + to_text(value) + ", expected " + to_text(range) +
+                                 "; correct the default or the range");
     if (!std::isfinite(range.low) || !std::isfinite(range.high)) fault(name, "has a range without finite bounds");
     if (range.unit.empty()) fault(name, "has no unit; the unit of a pure number is \"1\"");
   }

@@ -23,7 +23,7 @@ enum class Unstable { invalid, run };
 template <>
 inline constexpr std::array<std::string_view, 2> names_of<Unstable>{"invalid", "run"};
 
-void declare_run(SettingsVisitor& v, Settings& s) {
+void declare_run(Parameters& v, Settings& s) {
   v.integer(s.seed, "seed", {0, 0x1p53 - 1}, "Seed of all random numbers.");
   v.integer(s.evaluations, "evaluations", {1, 1e9}, "Number of evaluations in the whole run.");
   v.real(s.spring_evaluations, "spring_evaluations", {0, 1e18},
@@ -58,23 +58,23 @@ void declare_run(SettingsVisitor& v, Settings& s) {
                 std::to_string(s.newborns()));
 }
 
-void declare_mass(SettingsVisitor& v, Settings& s) {
+void declare_mass(Parameters& v, Settings& s) {
   v.real(s.mass, host_key::mass, {1e-9, 1e9, "kg"}, "Mass of each point mass of a body, without payload.");
 }
 
-void declare_accuracy(SettingsVisitor& v, Settings& s) {
+void declare_accuracy(Parameters& v, Settings& s) {
   choice(v, s.accuracy, "accuracy",
          "Preset for method, precision, dt and refine: sets those of them that are left out.");
 }
 
-void declare_simulation(SettingsVisitor& v, Settings& s) {
+void declare_simulation(Parameters& v, Settings& s) {
   choice(v, s.stepping.method, "method", "Time-stepping method.");
   choice(v, s.stepping.precision, "precision", "Floating-point precision of the simulation.");
   choice(v, s.stepping.materials, "materials",
          "How a GPU stores the materials of springs: exactly in a table, or rounded in codes from which it computes "
          "them.");
-  v.real_or_auto(s.step.dt, "dt", {1e-7, 0.1, "s"},
-                 "Time step; auto: each body has its own time step, at which its simulation is stable.");
+  v.declare({"dt", "Time step; auto: each body has its own time step, at which its simulation is stable.",
+             parameter::OptionalReal{s.step.dt, {1e-7, 0.1, "s"}, "auto"}});
   v.integer(s.step.refine, "refine", {1, 1000}, "Number by which every time step is divided.");
   auto unstable = s.step.run_unstable ? Unstable::run : Unstable::invalid;
   choice(v, unstable, "unstable",
@@ -84,7 +84,7 @@ void declare_simulation(SettingsVisitor& v, Settings& s) {
   v.integer(s.threads, "threads", {0, 4096}, "Number of threads on the CPU; 0: one for each core.");
 }
 
-void declare_development(SettingsVisitor& v, Settings& s) {
+void declare_development(Parameters& v, Settings& s) {
   DevelopmentSettings& d = s.development;
   v.integer(d.cycles, "cycles", {0, rng_stream::most_cycles},
             "Number of cycles of simulation and development; by default 0 if there is no devo operator.");
@@ -105,7 +105,7 @@ void declare_development(SettingsVisitor& v, Settings& s) {
             "Number of time steps from one tally to the next; used only with probe = \"skip-shift\".");
 }
 
-void declare_scenario(SettingsVisitor& v, Scenario& s) {
+void declare_scenario(Parameters& v, Scenario& s) {
   v.real(s.start_noise, "start_noise", {0, 0.5, "1"},
          "Largest offset by which each mass is moved along each axis at random, relative to the body's longest side.");
   v.flag(s.muscles, "muscles", "Whether the muscles are actuated.");
@@ -117,37 +117,37 @@ void declare_scenario(SettingsVisitor& v, Scenario& s) {
          "scene of the experiment. Noise, damage and still muscles begin when it has matured.");
 }
 
-void declare_over(SettingsVisitor& v, std::string& over) {
+void declare_over(Parameters& v, std::string& over) {
   v.text(
       over, host_key::over,
       "How the scores in several tests become one: \"mean\", \"worst\" or \"median\" of all scenarios and repeats, or "
       "the name of a scenario: the mean of its repeats.");
 }
 
-void declare_over_lives(SettingsVisitor& v, Over& over) {
+void declare_over_lives(Parameters& v, Over& over) {
   choice(v, over, host_key::over_lives,
          "How the scores of its objectives in several lives become one. Descriptors and measures: always their mean; "
          "constraints: their worst.");
 }
 
-void declare_schedule(SettingsVisitor& v, Schedule& s) {
+void declare_schedule(Parameters& v, Schedule& s) {
   constexpr Range cycles{1, rng_stream::most_cycles};
   v.integer(s.from, host_key::from, cycles, "First cycle after which the operator is applied.");
   v.integer(s.to, host_key::to, cycles, "Last cycle after which the operator may be applied.");
   v.integer(s.every, host_key::every, cycles, "Number of cycles from one application of the operator to the next.");
 }
 
-void declare_remeasure(SettingsVisitor& v, Settings& s) {
+void declare_remeasure(Parameters& v, Settings& s) {
   v.integer(s.remeasure, host_key::remeasure, {0, 1e6},
             "Number of members of the population that live again in each generation, those first that were measured "
             "longest ago; their scores become those of all their lives. For operators that keep elders.");
 }
 
-void declare_probability(SettingsVisitor& v, double& probability) {
+void declare_probability(Parameters& v, double& probability) {
   v.real(probability, host_key::probability, {0, 1}, "Probability that this operator is applied to a child.");
 }
 
-void declare(SettingsVisitor& v, Material& material) {
+void declare(Parameters& v, Material& material) {
   v.real(material.stiffness, "stiffness", {0, 1e12, "N/m"},
          "Spring constant; 0: the material is air, and its springs are left out.");
   v.real(material.amplitude, "amplitude", {0, largest_amplitude},
@@ -159,12 +159,12 @@ void declare(SettingsVisitor& v, Material& material) {
       "Damping ratio of the dashpot beside each spring: 1 is the critical damping of its two masses; 0: no dashpot.");
 }
 
-void declare(SettingsVisitor& v, Gravity& gravity) {
+void declare(Parameters& v, Gravity& gravity) {
   v.real(gravity.acceleration, "acceleration", {0, 1000, "m/s^2"}, "Acceleration by gravity, downwards.");
   v.real(gravity.slope, "slope", {-80, 80, "degrees"}, "Slope of the floor; if it is above 0, +x points downhill.");
 }
 
-void declare(SettingsVisitor& v, Floor& floor) {
+void declare(Parameters& v, Floor& floor) {
   v.optional_real(floor.restitution, "restitution", {0, 1},
                   "Makes the floor rigid: the speed with which a mass bounces off, relative to the speed with which it "
                   "arrives. Give this key or stiffness.");
@@ -177,7 +177,7 @@ void declare(SettingsVisitor& v, Floor& floor) {
   v.integer(floor.seed, "seed", {0, 0x1p32 - 1}, "Seed of the heights of rough ground.");
 }
 
-void declare(SettingsVisitor& v, Friction& friction) {
+void declare(Parameters& v, Friction& friction) {
   v.real(friction.coefficient, "coefficient", {0, 100}, "Coefficient of Coulomb friction.");
   v.optional_real(
       friction.static_coefficient, "static", {0, 100},
@@ -186,22 +186,22 @@ void declare(SettingsVisitor& v, Friction& friction) {
             "expected at least the coefficient, " + to_text(friction.coefficient));
 }
 
-void declare(SettingsVisitor& v, Damping& damping) {
+void declare(Parameters& v, Damping& damping) {
   v.real(damping.rate, "rate", {0, 1e6, "1/s"}, "Rate at which every velocity decays: dv/dt = -rate v.");
 }
 
-void declare(SettingsVisitor& v, Drag& drag) {
+void declare(Parameters& v, Drag& drag) {
   v.real(drag.coefficient, "coefficient", {0, 1e6, "kg/m"},
          "Coefficient of drag: the force on a mass is -coefficient |v| v.");
 }
 
-void declare(SettingsVisitor& v, Payload& payload) {
+void declare(Parameters& v, Payload& payload) {
   v.real(payload.share, "share", {0, 1000, "1"}, "Mass of the payload, relative to the mass of the body at birth.");
   v.real(payload.top, "top", {0, 1, "1"},
          "Fraction of the body's height at birth, from the top down, in which the masses carry the payload.");
 }
 
-void declare(SettingsVisitor& v, IslandSettings& s) {
+void declare(Parameters& v, IslandSettings& s) {
   v.integer(s.count, "count", {2, most_islands}, "Number of islands.");
   choice(v, s.topology, "topology",
          "Which islands send migrants to which: each to the next (ring), to its four neighbours on a grid that is "
@@ -215,11 +215,11 @@ void declare(SettingsVisitor& v, IslandSettings& s) {
          "survivor with the worst first objective, or of a random one; nobody: it is dropped.");
 }
 
-void declare_island_number(SettingsVisitor& v, std::int64_t& number) {
+void declare_island_number(Parameters& v, std::int64_t& number) {
   v.integer(number, "number", {1, most_islands}, "Number of the island, from 1.");
 }
 
-void declare_island(SettingsVisitor& v, std::optional<double>& seed) {
+void declare_island(Parameters& v, std::optional<double>& seed) {
   v.optional_real(seed, "seed", {0, 0x1p53 - 1},
                   "Seed of all random numbers of the island; by default it follows from the seed of the run.");
 }

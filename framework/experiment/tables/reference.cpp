@@ -7,17 +7,10 @@
 namespace evodevo {
 namespace {
 
-class SettingsDescriber final : public Describer<SettingsVisitor> {
- public:
-  void real_or_auto(std::optional<double>& value, std::string_view name, Range range, std::string_view text) override {
-    add(name, "\"auto\" or a number", value ? to_text(*value) : "\"auto\"", range, text);
-  }
-};
-
 /// The section of one table: its name in Markdown, one sentence, and the keys that `declare_keys` declares.
 template <class DeclareKeys>
 std::string section(const std::string& name, const std::string& sentence, const DeclareKeys& declare_keys) {
-  SettingsDescriber describer;
+  Describer describer;
   declare_keys(describer);
   return heading_text(3, name) + sentence + "\n\n" + parameter_table(describer.found, "key");
 }
@@ -25,7 +18,7 @@ std::string section(const std::string& name, const std::string& sentence, const 
 /// The section of a table whose keys are the members of one object. The defaults are those of a new object.
 template <class Object>
 std::string section_of(const std::string& name, const std::string& sentence) {
-  return section(name, sentence, [](SettingsVisitor& v) {
+  return section(name, sentence, [](Parameters& v) {
     Object object;
     declare(v, object);
   });
@@ -36,7 +29,7 @@ std::string section_of_scene() {
   std::vector<ParameterDescription> keys;
   Settings settings;
   for_each_force(settings, [&](std::string_view name, auto& force) {
-    SettingsDescriber describer;
+    Describer describer;
     declare(describer, force.emplace());
     for (ParameterDescription& key : describer.found) {
       key.name = std::string(name) + "." + key.name;
@@ -61,26 +54,26 @@ std::string experiment_reference() {
   double probability = Varied<Mutation>().probability;
   std::string text;
   text += section("`[experiment]`", "How long the run takes, and how many individuals live at once.",
-                  [&](SettingsVisitor& v) { declare_run(v, s); });
+                  [&](Parameters& v) { declare_run(v, s); });
   text += section("`[encoding]`", "The key that every encoding has in addition to `name` and its own parameters.",
-                  [&](SettingsVisitor& v) { declare_mass(v, s); });
+                  [&](Parameters& v) { declare_mass(v, s); });
   text +=
       section("`[[mutation]]` and `[[crossover]]`",
               "The key that every mutation and crossover operator has in addition to `name` and its own parameters.",
-              [&](SettingsVisitor& v) { declare_probability(v, probability); });
+              [&](Parameters& v) { declare_probability(v, probability); });
   text += section_of_scene();
-  text += section("`[simulation]`", "How motion is computed, and on which device.", [&](SettingsVisitor& v) {
+  text += section("`[simulation]`", "How motion is computed, and on which device.", [&](Parameters& v) {
     declare_accuracy(v, s);
     declare_simulation(v, s);
   });
   text += section("`[development]`", "How long a body develops. Without this table, bodies do not develop.",
-                  [&](SettingsVisitor& v) { declare_development(v, s); });
+                  [&](Parameters& v) { declare_development(v, s); });
   text += section("`[[development.operator]]`",
                   "The keys that every devo operator has in addition to `name` and its own parameters.",
-                  [&](SettingsVisitor& v) { declare_schedule(v, schedule); });
+                  [&](Parameters& v) { declare_schedule(v, schedule); });
   text +=
       section("`[[fitness]]`", "The keys that every fitness operator has in addition to `name` and its own parameters.",
-              [&](SettingsVisitor& v) {
+              [&](Parameters& v) {
                 std::string over(name_of(Scored().over));
                 declare_over(v, over);
                 Over over_lives = Over::mean;
@@ -91,14 +84,14 @@ std::string experiment_reference() {
               "A test of the robot, with a `name`; there may be several. Tables such as `[scenario.gravity]`, "
               "`[scenario.floor]` or `[scenario.payload]` have the keys of the tables of `[scene]`; what they leave "
               "out stays as in the scene. Without this table, robots are measured in the scene itself.",
-              [&](SettingsVisitor& v) {
+              [&](Parameters& v) {
                 Scenario scenario;
                 declare_scenario(v, scenario);
               });
   text += section("`[selection]`",
                   "The keys that this table has in addition to `name` and the parameters of the operator, or to the "
                   "tables of two operators.",
-                  [&](SettingsVisitor& v) { declare_remeasure(v, s); });
+                  [&](Parameters& v) { declare_remeasure(v, s); });
   text += section_of<IslandSettings>(
       "`[islands]`",
       "Several populations in one run, between which individuals migrate. Without this table, there is "
@@ -106,7 +99,7 @@ std::string experiment_reference() {
   text += section("`[[island]]`",
                   "What is different on one island. Tables such as `[island.selection]`, `[[island.mutation]]` and "
                   "`[[island.crossover]]` replace all tables of this name.",
-                  [&](SettingsVisitor& v) {
+                  [&](Parameters& v) {
                     std::int64_t number = 1;
                     std::optional<double> seed;
                     declare_island_number(v, number);

@@ -23,7 +23,7 @@ namespace evodevo {
 inline constexpr std::uint64_t plugin_magic = 0x6f7665646f7665ull;  // "evodevo", little-endian
 /// Version of the interface. It must be raised whenever a declaration that plugins see changes its meaning, or is
 /// changed, moved, added or removed; tests/host/plugin_border_test.cpp finds changed declarations.
-inline constexpr std::uint32_t plugin_epoch = 19;
+inline constexpr std::uint32_t plugin_epoch = 20;
 
 /// Returns a hash of the sizes of structs.
 template <class... Structs>

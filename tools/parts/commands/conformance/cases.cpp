@@ -40,38 +40,33 @@ class Refusable final : public Parameters {
  public:
   std::vector<std::pair<std::string, toml::table>> tables;
 
-  void real(double&, std::string_view name, Range range, std::string_view) override {
-    add(name, "text");
-    beyond(name, range);
-  }
-  void integer(std::int64_t&, std::string_view name, Range range, std::string_view) override {
-    add(name, 0.5);
-    beyond(name, range);
-  }
-  void flag(bool&, std::string_view name, std::string_view) override { add(name, 1); }
-  void choice(std::string&, std::string_view name, std::initializer_list<std::string_view>, std::string_view) override {
-    add(name, "none of the options");
-  }
-  void vector(Vec3&, std::string_view name, Range, std::string_view) override { add(name, 1.0); }
-  void vector_or_choice(Vec3&, std::string&, std::string_view name, Range, std::initializer_list<std::string_view>,
-                        std::string_view) override {
-    add(name, "none of the options");
-    add(name, 1.0);
-  }
-  void counts(std::array<std::int64_t, 3>&, std::string_view name, Range, std::string_view) override { add(name, 1); }
-  void optional_real(std::optional<double>&, std::string_view name, Range range, std::string_view) override {
-    add(name, "text");
-    beyond(name, range);
-  }
-  void reals(std::vector<double>&, std::string_view name, Range, std::string_view) override { add(name, 1.0); }
-  void text(std::string&, std::string_view name, std::string_view) override { add(name, 1); }
-  void file(InputFile&, std::string_view name, std::string_view) override { add(name, "/no such file"); }
-  void materials(std::vector<std::string>&, std::string_view name, std::string_view) override {
-    add(name, toml::array{"none of the materials"});
+  void declare(const Parameter& parameter) override {
+    std::visit([&](const auto& variable) { refuse(parameter.name, variable); }, parameter.variable);
   }
   void require(bool, std::string_view, std::string_view) override {}
 
  private:
+  void refuse(std::string_view name, const parameter::Real& real) {
+    add(name, "text");
+    beyond(name, real.range);
+  }
+  void refuse(std::string_view name, const parameter::Integer& integer) {
+    add(name, 0.5);
+    beyond(name, integer.range);
+  }
+  void refuse(std::string_view name, const parameter::OptionalReal& real) {
+    add(name, "text");
+    beyond(name, real.range);
+  }
+  void refuse(std::string_view name, const parameter::Choice&) { add(name, "none of the options"); }
+  void refuse(std::string_view name, const parameter::VectorOrChoice&) {
+    add(name, "none of the options");
+    add(name, 1.0);
+  }
+  void refuse(std::string_view name, const parameter::File&) { add(name, "/no such file"); }
+  void refuse(std::string_view name, const parameter::Materials&) { add(name, toml::array{"none of the materials"}); }
+  void refuse(std::string_view name, const auto&) { add(name, 1); }  // neither true or false, a list nor a text
+
   template <class Value>
   void add(std::string_view name, Value&& value) {
     toml::table table;
@@ -168,39 +163,34 @@ void untouched_inputs(const Subject& subject, std::uint64_t seed) {
 /// Sets every parameter to a different allowed value.
 class Changer final : public Parameters {
  public:
-  void real(double& value, std::string_view, Range range, std::string_view) override { value = other(value, range); }
-  void integer(std::int64_t& value, std::string_view, Range range, std::string_view) override {
-    value = static_cast<std::int64_t>(other(static_cast<double>(value), range));
+  void declare(const Parameter& parameter) override {
+    std::visit([](const auto& variable) { change(variable); }, parameter.variable);
   }
-  void flag(bool& value, std::string_view, std::string_view) override { value = !value; }
-  void choice(std::string& value, std::string_view, std::initializer_list<std::string_view> options,
-              std::string_view) override {
-    for (const std::string_view option : options)
-      if (option != value) return void(value = option);
-  }
-  void vector(Vec3& value, std::string_view, Range range, std::string_view) override {
-    value.x = other(value.x, range);
-  }
-  void vector_or_choice(Vec3&, std::string& word, std::string_view, Range,
-                        std::initializer_list<std::string_view> options, std::string_view) override {
-    for (const std::string_view option : options)
-      if (option != word) return void(word = option);
-  }
-  void counts(std::array<std::int64_t, 3>& value, std::string_view, Range range, std::string_view) override {
-    value[0] = static_cast<std::int64_t>(other(static_cast<double>(value[0]), range));
-  }
-  void optional_real(std::optional<double>& value, std::string_view, Range range, std::string_view) override {
-    value = other(value.value_or(range.high), range);
-  }
-  void reals(std::vector<double>& value, std::string_view, Range range, std::string_view) override {
-    value.push_back(range.low);
-  }
-  void text(std::string& value, std::string_view, std::string_view) override { value += "other"; }
-  void file(InputFile& value, std::string_view, std::string_view) override { value = {"other", "content"}; }
-  void materials(std::vector<std::string>& value, std::string_view, std::string_view) override { value = {"bone"}; }
   void require(bool, std::string_view, std::string_view) override {}
 
  private:
+  static void change(const parameter::Real& real) { real.value = other(real.value, real.range); }
+  static void change(const parameter::Integer& integer) { integer.value = other(integer.value, integer.range); }
+  static void change(const parameter::Flag& flag) { flag.value = !flag.value; }
+  static void change(const parameter::Choice& choice) { change(choice.value, choice.options); }
+  static void change(const parameter::Vector& vector) { vector.value.x = other(vector.value.x, vector.range); }
+  static void change(const parameter::VectorOrChoice& either) { change(either.word, either.options); }
+  static void change(const parameter::Counts& counts) { counts.value[0] = other(counts.value[0], counts.range); }
+  static void change(const parameter::OptionalReal& real) {
+    real.value = other(real.value.value_or(real.range.high), real.range);
+  }
+  static void change(const parameter::Reals& reals) { reals.value.push_back(reals.range.low); }
+  static void change(const parameter::Text& text) { text.value += "other"; }
+  static void change(const parameter::File& file) { file.value = {"other", "content"}; }
+  static void change(const parameter::Materials& materials) { materials.value = {"bone"}; }
+
+  static void change(std::string& word, parameter::Options options) {
+    for (const std::string_view option : options)
+      if (option != word) return void(word = option);
+  }
+  static std::int64_t other(std::int64_t value, Range range) {
+    return static_cast<std::int64_t>(other(static_cast<double>(value), range));
+  }
   static double other(double value, Range range) {
     const double end = value == range.low ? range.high : range.low;
     return std::isfinite(end) ? end : value + 1;
