@@ -61,7 +61,7 @@ void Describer::declare(const Parameter& parameter) {
       [&](const auto& variable) {
         const auto [type, value] = told(variable);
         ParameterDescription description{
-            printable(parameter.name), type, printable(value), "", "", printable(parameter.text, longest_text)};
+            printable(parameter.name), type, printable(value), "", "1", printable(parameter.text, longest_text)};
         if constexpr (requires { variable.range; }) {
           description.allowed = to_text(variable.range);
           description.unit = printable(variable.range.unit);

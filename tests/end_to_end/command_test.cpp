@@ -417,6 +417,9 @@ TEST_F(Command, OperatorsDescribeThemselves) {
   ASSERT_EQ(json.size(), 10u);
   EXPECT_EQ(json[8].at("name"), "spring-turnover") << "in alphabetical order";
   EXPECT_EQ(json[8].at("parameters")[0].at("default"), "125");
+  for (const auto& described : json)
+    for (const auto& parameter : described.at("parameters"))
+      EXPECT_NE(parameter.at("unit"), "") << "what has no unit has the unit 1: " << parameter;
   EXPECT_THAT(said({"describe", "spring-turnover"}), HasSubstr("springs = 125"));
   EXPECT_THAT(refusal({"describe", "spring-turnove"}),
               naming("\"spring-turnove\"", "did you mean \"spring-turnover\"?"));

@@ -76,11 +76,11 @@ def section(distances, shares, first, last, kind="study"):
     """Returns the section with the answers, which are there once all runs have been measured; before, what is there is
     compared. `distances` and `shares`: of each arm and run; `first` and `last`: the columns of `shares` that are compared.
     A repetition asks nothing about learning."""
-    title = "## Answers\n\n"
+    text = "## Answers\n"
     if lacking := missing(distances, RUNS[kind]):
-        title += f"None yet: of the {RUNS[kind]} runs of each arm, {', '.join(lacking)}.\n\n"
+        text += f"\nNone yet: of the {RUNS[kind]} runs of each arm, {', '.join(lacking)}.\n"
     if any(not distances.get(arm) for question in QUESTIONS for arm in question[1:]):
-        return title.rstrip("\n") + "\n"
+        return text
     held, every = [], []
     for _, a, b in QUESTIONS:
         samples = held_and_all(distances[a]), held_and_all(distances[b])
@@ -93,11 +93,11 @@ def section(distances, shares, first, last, kind="study"):
         ps = [[*some, p] for some, (p, _) in zip(ps, tested)]
     holm_held, holm_all = map(inference.holm, ps)
     lines = []
-    for i, (text, a, b) in enumerate(QUESTIONS):
+    for i, (question, a, b) in enumerate(QUESTIONS):
         answer = questions.answer(held[i], holm_held[i], holm_all[i], every[i].a12)
         lines.append(
             [
-                text,
+                question,
                 f"`{a}`, `{b}`",
                 f"{len(held[i].a)} of {len(distances[a])}, {len(held[i].b)} of {len(distances[b])}",
                 f"{number(inference.median(held[i].a))}, {number(inference.median(held[i].b))}",
@@ -109,7 +109,7 @@ def section(distances, shares, first, last, kind="study"):
             ]
         )
     header = ["", "arms", "held", "medians", "A12", INTERVAL, "p (Holm), held", "p (Holm), all", "answer"]
-    text = title + table(header, lines)
+    text += f"\n{table(header, lines)}"
     if kind == "study" and not lacking:
         answer = inborn(changes[0], (holm_held[-1], holm_all[-1]), [sign for _, sign in tested])
         text += (

@@ -38,8 +38,8 @@ inline constexpr std::uint32_t plugin_struct_digest =
     digest_of_sizes<Body, Mass, Spring, Material, State, Rng, GeneSpec, BlockType, Block, Genome, Layout, Parents,
                     EncodingContext, Blueprint, DevoContext, Edits, NewMass, NewSpring, ChangedSpring, RecordRequest,
                     Measure, Request, Observation, Samples, StoredSample, BodyVersion, Objective, Candidate,
-                    SelectionContext, Case, NoteTitle, Note, Survival, Child, Size, Growth, Causes, Traits, InputFile,
-                    Range, Box, Vec3>();
+                    SelectionContext, Case, NoteTitle, Note, Survival, Child, Size, Growth, Causes, Traits, Parameter,
+                    InputFile, Range, Box, Vec3>();
 
 #define EVODEVO_TEXT_(x) #x
 #define EVODEVO_TEXT(x) EVODEVO_TEXT_(x)
