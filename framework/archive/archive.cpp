@@ -140,10 +140,10 @@ Archive Archive::create(const fs::path& folder, const Experiment& experiment, co
                  has_range ? std::optional(measure.high) : std::nullopt,
                  has_range ? std::optional(measure.bins) : std::nullopt);
   }
-  for (std::size_t i = 0; i < experiment.notes.size(); ++i)
+  const std::vector<NoteTitle> titles = experiment.note_titles();
+  for (std::size_t i = 0; i < titles.size(); ++i)
     Statement(run, "note_titles", "INSERT INTO note_titles VALUES(?, ?, ?, ?)")
-        .execute(static_cast<std::uint32_t>(i), experiment.notes[i].name, experiment.notes[i].unit,
-                 experiment.notes[i].is_label ? 1 : 0);
+        .execute(static_cast<std::uint32_t>(i), titles[i].name, titles[i].unit, titles[i].is_label ? 1 : 0);
   for (std::size_t i = 0; i < experiment.scenarios.size(); ++i)
     Statement(run, "scenarios", "INSERT INTO scenarios VALUES(?, ?)")
         .execute(static_cast<std::uint32_t>(i), experiment.scenarios[i].name);

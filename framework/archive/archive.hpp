@@ -43,7 +43,7 @@ struct FinishedGeneration {
   std::vector<std::uint32_t> dropped;      ///< ids of those that selection dropped
   LivesById lives;                         ///< of individuals on the front, as far as they are new
   Summary summary;
-  Remembered remembered;                ///< of the selection operator
+  Remembered remembered;                ///< of the selection operators
   std::vector<Refusal> refusals;        ///< of newborns or older ones
   std::vector<Emigration> emigrations;  ///< after the generation
 };
@@ -224,8 +224,8 @@ class Archive {
   std::vector<ArchivedNote> notes(std::uint32_t id) const;
   /// Returns what the selection operator had noted about the living after each generation, for each of note_titles().
   std::vector<NoteHistory> note_histories() const;
-  /// Returns what the selection operator remembers after the last generation; empty if that is nothing.
-  std::vector<std::byte> memory() const;
+  /// Returns what the selection operators remember after the last generation.
+  Memories memory() const;
   /// Returns the scores of an individual in each repeat of each scenario, life by life, in the order of the experiment.
   std::vector<ArchivedTest> tests(std::uint32_t id) const;
   /// Returns the records of an individual's lives; none if the individual never reached the front.

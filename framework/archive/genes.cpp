@@ -31,12 +31,16 @@ std::vector<Item> items_in(const Statement& row, int column, const char* expecte
 void insert_types(const RunDatabase& run, const Layout& layout) {
   Statement insert(run, "block_types", "INSERT INTO block_types VALUES(?, ?, ?, ?, ?)");
   Statement insert_gene(run, "gene_types", "INSERT INTO gene_types VALUES(?, ?, ?, ?, ?, ?, ?)");
+  Statement insert_option(run, "gene_options", "INSERT INTO gene_options VALUES(?, ?, ?, ?)");
   for (std::uint32_t t = 0; t < layout.types.size(); ++t) {
     const BlockType& type = layout.types[t];
     insert.execute(t, type.section, type.name, type.least, type.most);
     for (std::uint32_t g = 0; g < type.genes.size(); ++g) {
       const GeneSpec& gene = type.genes[g];
       insert_gene.execute(t, g, type.gene_names[g], double{gene.low}, double{gene.high}, gene.choices, gene.refers_to);
+      const std::span<const std::string> options = type.options(g);
+      for (std::uint32_t option = 0; option < options.size(); ++option)
+        insert_option.execute(t, g, option, options[option]);
     }
   }
 }
@@ -46,6 +50,18 @@ void read_types(const RunDatabase& run, Layout& layout) {
   Statement gene(
       run, "gene_types",
       "SELECT position, name, low, high, choices, refers_to FROM gene_types WHERE type = ? ORDER BY position");
+  Statement option(run, "gene_options",
+                   "SELECT option, name FROM gene_options WHERE type = ? AND position = ? ORDER BY option");
+  const auto options_of = [&](std::uint32_t type, std::int64_t position) {
+    std::vector<std::string> names;
+    option.bind(type, position);
+    while (option.step()) {
+      const auto number = static_cast<std::int64_t>(names.size());
+      option.integer(0, number, number);
+      names.push_back(option.text(1));
+    }
+    return names;
+  };
   for (std::uint32_t t = 0; row.step(); ++t) {
     row.integer(0, t, t);
     BlockType& type = layout.types.emplace_back();
@@ -60,6 +76,7 @@ void read_types(const RunDatabase& run, Layout& layout) {
       type.gene_names.push_back(gene.text(1));
       type.genes.push_back({static_cast<float>(gene.number(2)), static_cast<float>(gene.number(3)), gene.index(4),
                             gene.is_null(5) ? std::nullopt : std::optional(gene.index(5))});
+      type.option_names.push_back(options_of(t, position));
     }
   }
 }
@@ -105,7 +122,7 @@ Layout read_layout(const RunDatabase& run) {
 std::string block_bytes(const Genome& genome, const Layout& layout) {
   std::string bytes;
   for (const Block& block : genome.blocks) {
-    if (is_fixed_section(layout, layout.types[block.type].section)) continue;
+    if (layout.is_fixed(layout.types[block.type].section)) continue;
     const StoredBlock stored{block.type, block.count, block.id};
     bytes.append(reinterpret_cast<const char*>(&stored), sizeof stored);
   }
@@ -129,7 +146,7 @@ Genome read_genome(const Statement& row, int genes, int blocks, const Layout& la
   };
   for (std::uint32_t section = 0; section < layout.sections.size(); ++section) {
     const auto is_here = [&](std::uint32_t type) { return layout.types[type].section == section; };
-    if (is_fixed_section(layout, section)) {
+    if (layout.is_fixed(section)) {
       for (const Block& block : layout.first_blocks)
         if (is_here(block.type)) add(block.type, block.count, block.id);
       continue;

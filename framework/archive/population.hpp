@@ -76,17 +76,23 @@ struct Refusal {
   std::string reason;                ///< the trial, and the fitness in it and in the run
 };
 
-/// A number that the selection operator has noted about an individual.
+/// A number that a selection operator has noted about an individual.
 struct NoteOf {
   std::uint32_t individual = 0;
-  std::uint32_t title = 0;  ///< index into Experiment::notes
+  std::uint32_t title = 0;  ///< index into Experiment::note_titles()
   double value = 0;
 };
 
-/// What the selection of a generation leaves behind besides the survivors.
+/// What the selection operators remember.
+struct Memories {
+  SelectionMemory survivors;  ///< of Experiment::selection
+  SelectionMemory parents;    ///< of Experiment::parent_selection; empty if there is none
+};
+
+/// What the selection operators leave behind in a generation besides newborns and survivors.
 struct Remembered {
-  std::vector<std::byte> memory;  ///< of the operator that chooses survivors
-  std::vector<NoteOf> notes;
+  Memories memory;
+  std::vector<NoteOf> notes;  ///< at most one of each title about an individual
 };
 
 }  // namespace evodevo

@@ -11,10 +11,6 @@
 namespace evodevo {
 namespace {
 
-bool has_causes(const Causes& causes) {
-  return std::any_of(Causes::lists.begin(), Causes::lists.end(), [&](auto list) { return !(causes.*list).empty(); });
-}
-
 std::string title(const Objective& objective) {
   return (objective.maximise ? "more " : "less ") + objective.name + " in " + objective.unit;
 }
@@ -28,7 +24,7 @@ std::string fault_of(const Change& change, std::uint32_t before, const Experimen
            std::to_string(cycles);
   if (change.op && *change.op >= experiment.devo.size())
     return "operator " + std::to_string(*change.op) + " of " + std::to_string(experiment.devo.size());
-  if (!change.op && has_causes(change.edits.causes)) return "causes of edits, but no operator that made the edits";
+  if (!change.op && has_causes(change.edits)) return "causes of edits, but no operator that made the edits";
   return "";
 }
 
@@ -58,11 +54,17 @@ void check_notes(const Archive& archive, const Experiment& experiment) {
       texts.push_back(note.name + (note.is_label ? " as a label" : " in " + note.unit));
     return joined(texts);
   };
-  const std::string recorded = titles(archive.note_titles()), now = titles(experiment.notes);
+  const std::string recorded = titles(archive.note_titles()), now = titles(experiment.note_titles());
   if (recorded != now)
     archive.refuse("its selection operator notes " + (recorded.empty() ? "nothing" : recorded) +
                    ", but that of the experiment notes " + (now.empty() ? "nothing" : now) +
                    "; use the operator that made it");
+}
+
+/// Checks that only operators that the experiment has remember something.
+void check_memory(const Archive& archive, const Experiment& experiment) {
+  if (!archive.memory().parents.empty() && !experiment.parent_selection)
+    archive.refuse("the operator in [selection.parents] remembers something, but the experiment has none");
 }
 
 /// Returns the lines of an experiment, each with its table, without those that say where the experiment is simulated.
@@ -148,7 +150,7 @@ void check_resumable(const Archive& archive, const Experiment& experiment) {
     check_lives(archive, experiment, newborn);
   }
   check_notes(archive, experiment);
-  archive.memory();
+  check_memory(archive, experiment);
   archive.provenances();
   recorded_time_spent(archive);
 }

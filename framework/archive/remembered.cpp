@@ -1,11 +1,29 @@
 #include "archive/remembered.hpp"
 
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
 #include <limits>
 #include <map>
 
 #include "archive/archive.hpp"
 
 namespace evodevo {
+namespace {
+
+static_assert(sizeof(double) == 8 && std::endian::native == std::endian::little);
+
+/// Whose memory a row of the table has.
+struct MemoryRole {
+  const char* name;
+  SelectionMemory Memories::*memory;
+};
+constexpr std::array memory_roles = {MemoryRole{"survivors", &Memories::survivors},
+                                     MemoryRole{"parents", &Memories::parents}};
+
+}  // namespace
 
 void write_remembered(const RunDatabase& run, const Remembered& remembered, std::uint32_t generation) {
   Statement insert(run, "notes",
@@ -13,9 +31,12 @@ void write_remembered(const RunDatabase& run, const Remembered& remembered, std:
                    "WHERE individual = ?1 AND note = ?2 ORDER BY generation DESC LIMIT 1)");
   for (const NoteOf& note : remembered.notes) insert.execute(note.individual, note.title, generation, note.value);
   Statement(run, "memory", "DELETE FROM memory").execute();
-  if (remembered.memory.empty()) return;
-  const std::string_view bytes(reinterpret_cast<const char*>(remembered.memory.data()), remembered.memory.size());
-  Statement(run, "memory", "INSERT INTO memory VALUES(?, ?)").execute(generation, bytes);
+  Statement insert_list(run, "memory", "INSERT INTO memory VALUES(?, ?, ?, ?, ?)");
+  for (const auto& [role, of_role] : memory_roles)
+    for (const auto& [name, numbers] : (remembered.memory.*of_role).lists) {
+      const std::string_view bytes(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double));
+      insert_list.execute(role, name, generation, (remembered.memory.*of_role).version, bytes);
+    }
 }
 
 std::vector<NoteTitle> Archive::note_titles() const {
@@ -68,16 +89,30 @@ std::vector<NoteHistory> Archive::note_histories() const {
   return histories;
 }
 
-std::vector<std::byte> Archive::memory() const {
-  Statement row(*run_, "memory",
-                "SELECT generation, bytes, (SELECT max(generation) FROM generations) AS last FROM memory");
-  if (!row.step()) return {};
-  if (row.is_null(2)) refuse("the selection operator remembers something, but there are no generations");
-  row.integer(0, row.index(2), row.index(2));
-  const auto bytes = std::as_bytes(std::span(row.bytes(1)));
-  std::vector<std::byte> memory(bytes.begin(), bytes.end());
-  if (row.step()) refuse("the table memory has more than one row");
-  return memory;
+Memories Archive::memory() const {
+  Memories memories;
+  Statement row(
+      *run_, "memory",
+      "SELECT role, name, generation, version, numbers, (SELECT max(generation) FROM generations) FROM memory");
+  while (row.step()) {
+    if (row.is_null(5)) refuse("a selection operator remembers something, but there are no generations");
+    const std::string role = row.line(0);
+    const auto found = std::ranges::find(memory_roles, role, &MemoryRole::name);
+    if (found == memory_roles.end()) row.refuse(0, "\"survivors\" or \"parents\"");
+    SelectionMemory& memory = memories.*found->memory;
+    row.integer(2, row.index(5), row.index(5));
+    const std::uint32_t version = memory.empty() ? row.index(3) : memory.version;
+    row.integer(3, version, version);
+    memory.version = version;
+    const std::string_view bytes = row.bytes(4);
+    std::vector<double> numbers(bytes.size() / sizeof(double));
+    if (!numbers.empty()) std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(double));
+    if (bytes.size() % sizeof(double) != 0 ||
+        !std::ranges::all_of(numbers, [](double number) { return std::isfinite(number); }))
+      row.refuse(4, "finite numbers of 8 bytes each");
+    memory.lists[row.text(1)] = std::move(numbers);
+  }
+  return memories;
 }
 
 }  // namespace evodevo

@@ -1,4 +1,4 @@
-// What the selection operator remembers and notes, in the archive.
+// What the selection operators remember and note, in the archive.
 #pragma once
 
 #include "archive/database.hpp"

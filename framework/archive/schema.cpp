@@ -29,6 +29,9 @@ CREATE TABLE gene_types(
   type INTEGER NOT NULL, position INTEGER NOT NULL, name TEXT NOT NULL,
   low REAL NOT NULL, high REAL NOT NULL, choices INTEGER NOT NULL, refers_to INTEGER,
   PRIMARY KEY(type, position)) WITHOUT ROWID;
+CREATE TABLE gene_options(
+  type INTEGER NOT NULL, position INTEGER NOT NULL, option INTEGER NOT NULL, name TEXT NOT NULL,
+  PRIMARY KEY(type, position, option)) WITHOUT ROWID;
 CREATE TABLE first_blocks(
   block INTEGER PRIMARY KEY, type INTEGER NOT NULL, genes INTEGER NOT NULL, id INTEGER NOT NULL);
 CREATE TABLE individuals(
@@ -66,8 +69,12 @@ CREATE TABLE note_titles(position INTEGER PRIMARY KEY, name TEXT NOT NULL, unit 
 CREATE TABLE notes(
   individual INTEGER NOT NULL, note INTEGER NOT NULL, generation INTEGER NOT NULL, value REAL NOT NULL,
   PRIMARY KEY(individual, note, generation)) WITHOUT ROWID;
--- what it remembers after the last generation; at most one row
-CREATE TABLE memory(generation INTEGER PRIMARY KEY, bytes BLOB NOT NULL);
+-- what the operator that chooses the survivors, or another one that chooses the parents, remembers after the last
+-- generation: lists of numbers by name
+CREATE TABLE memory(
+  role TEXT NOT NULL, name TEXT NOT NULL, generation INTEGER NOT NULL, version INTEGER NOT NULL,
+  numbers BLOB NOT NULL,                -- float64, little-endian
+  PRIMARY KEY(role, name));
 -- what development did in each life of those who reached the front; see life_record.hpp
 CREATE TABLE lives(
   individual INTEGER NOT NULL, life INTEGER NOT NULL, record BLOB NOT NULL, PRIMARY KEY(individual, life));

@@ -7,7 +7,7 @@ namespace evodevo {
 
 /// Version of the tables. It must be raised whenever the tables are changed in such a way that older programs cannot
 /// read the new tables, or that this program cannot read the old ones.
-inline constexpr const char* archive_format = "16";
+inline constexpr const char* archive_format = "17";
 
 void create_tables(RunDatabase& run);
 

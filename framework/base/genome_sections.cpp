@@ -67,6 +67,8 @@ void append(Layout& layout, const std::string& owner, const std::vector<BlockTyp
     for (GeneSpec& gene : type.genes)
       if (gene.refers_to) gene.refers_to = *gene.refers_to - first_type + new_first;
     const std::size_t genes = std::max(type.genes.size(), type.gene_names.size());
+    type.option_names.resize(type.genes.size());
+    type.option_names.resize(genes, type.option_names.back());  // the last gene describes all further ones
     type.genes.resize(genes, type.genes.back());
     type.gene_names.resize(genes);
     layout.types.push_back(std::move(type));
@@ -82,6 +84,21 @@ std::string gene_spec_fault(const GeneSpec& gene, const Layout& layout) {
   return is_range ? "" : fmt::format("has the range {} to {}", to_text(gene.low), to_text(gene.high));
 }
 
+/// What is wrong with the names of the options of a gene, the one at an index of `genes`.
+std::string options_fault(const BlockType& type, std::size_t gene) {
+  const std::vector<std::string>& names = type.option_names[gene];
+  if (names.empty()) return "";
+  if (const std::uint32_t choices = type.genes[gene].choices; names.size() != choices)
+    return fmt::format("names {} options of a gene that has {}", names.size(), choices);
+  std::set<std::string_view> seen;
+  for (const std::string& name : names) {
+    if (const std::string fault = text_fault(name); name.empty() || !fault.empty())
+      return fault.empty() ? "has an option without a name" : "has an option whose name " + fault;
+    if (!seen.insert(name).second) return fmt::format("has two options with the name \"{}\"", name);
+  }
+  return "";
+}
+
 std::string type_fault(const BlockType& type, const Layout& layout) {
   const std::string title = fmt::format("block type \"{}\"", printable(type.name));
   if (const std::string fault = text_fault(type.name); type.name.empty() || !fault.empty())
@@ -92,6 +109,12 @@ std::string type_fault(const BlockType& type, const Layout& layout) {
   for (const GeneSpec& gene : type.genes)
     if (const std::string fault = gene_spec_fault(gene, layout); !fault.empty())
       return fmt::format("{} has a gene that {}", title, fault);
+  if (type.option_names.size() > type.genes.size())
+    return fmt::format("{} names the options of {} genes, but has {}", title, type.option_names.size(),
+                       type.genes.size());
+  for (std::size_t gene = 0; gene < type.option_names.size(); ++gene)
+    if (const std::string fault = options_fault(type, gene); !fault.empty())
+      return fmt::format("{}, gene {}: {}", title, gene, fault);
   return "";
 }
 
@@ -203,8 +226,6 @@ Layout some_sections(const Layout& whole, const SectionIndices& which, std::opti
   }
   return layout;
 }
-
-bool is_fixed_section(const Layout& layout, std::uint32_t section) { return types_of(layout, section).are_fixed; }
 
 std::vector<Genome> split(const Genome& genome, const Layout& layout) {
   std::vector<Genome> sections(layout.sections.size());

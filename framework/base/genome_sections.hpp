@@ -23,9 +23,6 @@ std::uint32_t add_section(Layout& whole, const std::string& owner, const Layout&
 /// gets the layout, if any.
 Layout some_sections(const Layout& whole, const SectionIndices& which, std::optional<std::uint32_t> own = std::nullopt);
 
-/// Returns whether all genomes have the same blocks in a section.
-bool is_fixed_section(const Layout& layout, std::uint32_t section);
-
 /// Returns one genome for each section of a genome.
 std::vector<Genome> split(const Genome& genome, const Layout& layout);
 /// Returns the genome that consists of the given sections, one for each section of the layout.

@@ -62,7 +62,7 @@ void for_each_part(Wire& wire, GeneSpec& gene) {
 
 template <class Wire>
 void for_each_part(Wire& wire, BlockType& type) {
-  wire(type.name, type.genes, type.least, type.most, type.gene_names, type.section);
+  wire(type.name, type.genes, type.least, type.most, type.gene_names, type.section, type.option_names);
 }
 
 template <class Wire>

@@ -108,7 +108,8 @@ Command genes_command() {
           .summary = "Print the genes of a robot by name",
           .text = {"A genome has a section for each operator that owns genes, and each section has blocks of genes. "
                    "Blocks of two individuals with equal ids descend from the same block. The value of a choice is "
-                   "the number of the option, counted from 0; the value of a reference is the id of a block."},
+                   "the name of the option or, if the encoding gives it none, its number, counted from 0; the value of "
+                   "a reference is the id of a block."},
           .examples = {"genes runs/quickstart-1", "genes runs/quickstart-1 --individual 295 --json"},
           .options = options,
           .function = genes};

@@ -29,14 +29,15 @@ Json to_json(const Event& event, const std::vector<Narrated>& operators) {
   json["event"] = event.what;
   if (event.is_spring())
     json["spring"] = event.masses;
-  else if (!event.growth)
+  else if (!event.scaling)
     json["mass"] = event.masses.front();
-  if (const auto& growth = event.growth) {
-    json["from"] = growth->from / growth->whole;
-    json["to"] = growth->to / growth->whole;
+  if (const auto& scaling = event.scaling) {
+    json["by"] = operators.at(*event.op).remembered(scaling->number);
+    json["from"] = scaling->from / scaling->whole;
+    json["to"] = scaling->to / scaling->whole;
   }
   if (event.cause) {
-    const Measure measure = operators.at(*event.op).measure(event.cause->list);
+    const Measure measure = operators.at(*event.op).measure(event.cause->kind);
     json["cause"] = event.cause->number;
     json["measure"] = measure.name;
     json["unit"] = measure.unit;
@@ -75,20 +76,21 @@ std::string title_of(const Event& event, const std::vector<Narrated>& operators)
   return fmt::format("cycle {}  {}: ", event.cycle, title);
 }
 
-std::string growth_text(const Growth& growth) {
-  return fmt::format("springs grow from {:.4g} to {:.4g} of their full growth", growth.from / growth.whole,
-                     growth.to / growth.whole);
+std::string scaling_text(const Event& event, const std::vector<Narrated>& operators) {
+  const Scaling& scaling = *event.scaling;
+  return fmt::format("rest lengths go from {:.4g} to {:.4g} of their \"{}\"", scaling.from / scaling.whole,
+                     scaling.to / scaling.whole, operators.at(*event.op).remembered(scaling.number));
 }
 
 void print(const Event& event, const std::vector<Narrated>& operators) {
   const Narrated* op = event.op ? &operators.at(*event.op) : nullptr;
   std::cout << title_of(event, operators);
-  if (event.growth)
-    std::cout << growth_text(*event.growth);
+  if (event.scaling)
+    std::cout << scaling_text(event, operators);
   else
     fmt::print(std::cout, "{} {}", who(event), event.what);
   if (event.mother) fmt::print(std::cout, ", a daughter of mass {}", *event.mother);
-  if (event.cause) print(*event.cause, op->measure(event.cause->list));
+  if (event.cause) print(*event.cause, op->measure(event.cause->kind));
   if (const auto& at = event.position) fmt::print(std::cout, " at ({:.4g}, {:.4g}, {:.4g}) m", at->x, at->y, at->z);
   if (event.rest_length) fmt::print(std::cout, ", rest length {:.4g} m", *event.rest_length);
   if (const auto& material = event.material) {
@@ -107,23 +109,23 @@ class Group {
 
   bool takes(const Event& event) const {
     return event.cycle == first_.cycle && event.op == first_.op && event.is_spring() == first_.is_spring() &&
-           event.growth.has_value() == first_.growth.has_value() && std::string_view(event.what) == first_.what;
+           event.scaling.has_value() == first_.scaling.has_value() && std::string_view(event.what) == first_.what;
   }
   void add(const Event& event) {
     ++count_;
     if (!event.cause || !std::isfinite(event.cause->number)) return;
-    list_ = event.cause->list;
+    kind_ = event.cause->kind;
     causes_.push_back(event.cause->number);
   }
   const Event& first() const { return first_; }
 
   /// Returns a text such as "125 springs gone (stress 0.01 to 0.3 N)".
   std::string text(const std::vector<Narrated>& operators) const {
-    if (first_.growth) return growth_text(*first_.growth);
+    if (first_.scaling) return scaling_text(first_, operators);
     std::string text = fmt::format("{} {}{} {}", count_, first_.is_spring() ? "spring" : "mass",
                                    count_ == 1 ? "" : (first_.is_spring() ? "s" : "es"), first_.what);
     if (causes_.empty()) return text;
-    const Measure measure = operators.at(*first_.op).measure(*list_);
+    const Measure measure = operators.at(*first_.op).measure(*kind_);
     const auto [least, most] = std::minmax_element(causes_.begin(), causes_.end());
     text += " (" + measure.name + ' ' + short_number(*least);
     if (*most > *least) text += " to " + short_number(*most);
@@ -133,8 +135,8 @@ class Group {
  private:
   Event first_;
   std::size_t count_ = 0;
-  std::vector<double> causes_;        ///< those that are finite numbers
-  std::optional<Causes::List> list_;  ///< of these; the edits of a group have one list
+  std::vector<double> causes_;    ///< those that are finite numbers
+  std::optional<EditKind> kind_;  ///< of these; all edits of a group are of one kind
 };
 
 /// Prints a line for each operator and cycle.

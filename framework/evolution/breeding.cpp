@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "evodevo/helpers/selection/pareto.hpp"
 #include "evolution/clones.hpp"
+#include "evolution/selection_checks.hpp"
 #include "evolution/selection_table.hpp"
 #include "threads/parallel.hpp"
 
@@ -20,13 +21,6 @@ constexpr std::size_t worth_threads = 256;  ///< newborns; one thread makes fewe
 
 Rng stream(const Experiment& experiment, std::uint32_t generation, std::uint32_t individual, std::uint32_t where) {
   return Rng(philox, {static_cast<std::uint64_t>(experiment.seed), generation, individual, where});
-}
-
-/// Throws std::runtime_error if the layout does not allow the genome, so that the error message names the faulty
-/// operator.
-void check_genome(const Genome& genome, const Layout& layout) {
-  if (const std::string fault = genome_fault(genome, layout); !fault.empty())
-    throw std::runtime_error("made a genome with " + fault);
 }
 
 Individual random_individual(const Experiment& experiment, std::uint32_t generation, std::uint32_t id,
@@ -73,13 +67,13 @@ void vary(const Experiment& experiment, const Varied<T>& varied, const OperatorC
 }
 
 /// The two parents of a child, as selection has chosen them.
-struct Couple {
+struct ParentsOfChild {
   const Individual& parent;  ///< the one whose place the child may take
   const Individual& mate;
   bool mate_is_better = false;
 };
 
-Individual child(const Experiment& experiment, const Couple& couple, std::uint32_t generation, std::uint32_t id,
+Individual child(const Experiment& experiment, const ParentsOfChild& couple, std::uint32_t generation, std::uint32_t id,
                  std::uint32_t repeat) {
   const auto& [parent, mate, mate_is_better] = couple;
   Individual individual;
@@ -100,7 +94,7 @@ Individual child(const Experiment& experiment, const Couple& couple, std::uint32
       const Genome mates = part_of(mate.genome, experiment.layout, crossover.sections, crossover.layout);
       vary(experiment, crossover, experiment.call_of(Crossover::kind, i, {.individual = id}), individual.genome,
            [&](const Genome& own) {
-             return crossover.op->cross({own, mates, mate_is_better}, crossover.layout, rng);
+             return crossover.op->cross({own, mates, mate_is_better}, {crossover.layout, generation}, rng);
            });
       individual.parents = {parent.id, mate.id};
       individual.origin = std::min(parent.origin, mate.origin);
@@ -111,7 +105,7 @@ Individual child(const Experiment& experiment, const Couple& couple, std::uint32
       Rng rng = draws(rng_stream::mutation + static_cast<std::uint32_t>(k));
       vary(experiment, mutation, experiment.call_of(Mutation::kind, k, {.individual = id}), individual.genome,
            [&](Genome genome) {
-             mutation.op->mutate(genome, mutation.layout, rng);
+             mutation.op->mutate(genome, {mutation.layout, generation}, rng);
              return genome;
            });
       names.push_back(mutation.name);
@@ -127,8 +121,13 @@ struct Brood {
   const std::vector<Individual>& population;
   std::uint32_t generation;
   std::uint32_t first_id;
-  std::span<const std::byte> memory;
+  Remembered& remembered;
   Workers* workers;
+
+  /// The memory of the operator that chooses the parents or makes the children.
+  SelectionMemory& memory() const {
+    return experiment.parent_selection ? remembered.memory.parents : remembered.memory.survivors;
+  }
 };
 
 /// The newborns of a generation and the genomes that are known: theirs, and those of the population.
@@ -177,40 +176,30 @@ class Nursery {
 
 Point scores_of(const Candidate& row) { return {row.scores.begin(), row.scores.end()}; }
 
-/// Throws std::runtime_error if the table does not have a row that an operator has chosen as a parent.
-void check_parent(std::uint32_t row, const SelectionContext& context) {
-  if (row >= context.rows.size())
-    throw std::runtime_error("chose row " + std::to_string(row) + " as a parent, but the table has " +
-                             std::to_string(context.rows.size()) + " rows, numbered from 0");
-}
-
-Couples chosen_parents(const Experiment& experiment, const SelectionContext& context, std::uint32_t count, Rng& rng) {
-  auto pairs = experiment.breeder().couples(context, count, rng);
-  if (pairs.size() != count)
-    throw std::runtime_error("chose " + std::to_string(pairs.size()) + " pairs of parents, expected " +
-                             std::to_string(count));
-  for (const auto& [parent, mate] : pairs) check_parent(std::max(parent, mate), context);
-  return pairs;
+std::vector<Couple> chosen_parents(const Experiment& experiment, const SelectionContext& context, std::uint32_t count,
+                                   Rng& rng) {
+  return call_operator(experiment.call_of(Selection::kind, experiment.breeder_index()), [&] {
+    auto couples = experiment.breeder().parents(context, count, rng);
+    check_couples(couples, context, count);
+    return couples;
+  });
 }
 
 /// Adds a child of each couple that the experiment's variation makes. `table` is that of the population.
-void add_children(const Brood& brood, const SelectionTable& table, const Couples& couples, Nursery& nursery) {
+void add_children(const Brood& brood, const SelectionTable& table, std::span<const Couple> couples, Nursery& nursery) {
   nursery.add_distinct(couples.size(), [&](std::size_t i, std::uint32_t id, std::uint32_t repeat) {
     const auto& [parent, mate] = couples[i];
-    const Couple couple{brood.population.at(parent), brood.population.at(mate),
-                        dominates(scores_of(table.rows()[mate]), scores_of(table.rows()[parent]))};
+    const ParentsOfChild couple{brood.population.at(parent), brood.population.at(mate),
+                                dominates(scores_of(table.rows()[mate]), scores_of(table.rows()[parent]))};
     return child(brood.experiment, couple, brood.generation, id, repeat);
   });
 }
 
 /// Adds `count` children that the experiment's variation makes.
 void add_varied(const Brood& brood, std::uint32_t count, Nursery& nursery) {
-  const auto& [experiment, population, generation, first_id, memory, workers] = brood;
-  const SelectionTable table(population, experiment, generation, memory);
-  Rng rng = stream(experiment, generation, 0, rng_stream::parents);
-  const Couples couples = call_operator(experiment.call_of(Selection::kind, experiment.breeder_index()),
-                                        [&] { return chosen_parents(experiment, table.context(), count, rng); });
-  add_children(brood, table, couples, nursery);
+  const SelectionTable table(brood.population, brood.experiment, brood.generation, brood.memory());
+  Rng rng = stream(brood.experiment, brood.generation, 0, rng_stream::parents);
+  add_children(brood, table, chosen_parents(brood.experiment, table.context(), count, rng), nursery);
 }
 
 /// Adds at most `most` immigrants.
@@ -228,29 +217,26 @@ void add_immigrants(const Brood& brood, std::span<const Migrant> migrants, std::
   }
 }
 
-std::vector<Child> made_children(const Experiment& experiment, const SelectionContext& context, std::uint32_t count,
-                                 Rng& rng) {
-  auto children = experiment.breeder().children(context, count, rng);
-  if (children.size() != count)
-    throw std::runtime_error("made " + std::to_string(children.size()) + " children, expected " +
-                             std::to_string(count));
-  for (const Child& child : children) {
-    check_genome(child.genome, context.layout);
-    if (child.parents.size() > 2)
-      throw std::runtime_error("made a child of " + std::to_string(child.parents.size()) + " parents, expected 0 to 2");
-    for (const std::uint32_t row : child.parents) check_parent(row, context);
-  }
-  return children;
+Offspring made_children(const Experiment& experiment, const SelectionContext& context, std::uint32_t count, Rng& rng) {
+  return call_operator(experiment.call_of(Selection::kind, experiment.breeder_index()), [&] {
+    Offspring offspring = experiment.breeder().children(context, count, rng);
+    check_offspring(
+        offspring,
+        {experiment.parent_selection ? experiment.child_notes : experiment.notes, experiment.breeder().memory()},
+        context, count);
+    return offspring;
+  });
 }
 
 /// Adds `count` children that the selection operator makes.
 void add_made(const Brood& brood, std::uint32_t count, Nursery& nursery) {
   const Experiment& experiment = brood.experiment;
-  const SelectionTable table(brood.population, experiment, brood.generation, brood.memory);
+  const SelectionTable table(brood.population, experiment, brood.generation, brood.memory());
   Rng rng = stream(experiment, brood.generation, 0, rng_stream::parents);
-  auto children = call_operator(experiment.call_of(Selection::kind, experiment.breeder_index()),
-                                [&] { return made_children(experiment, table.context(), count, rng); });
-  for (Child& made : children) {
+  Offspring offspring = made_children(experiment, table.context(), count, rng);
+  if (offspring.memory) brood.memory() = std::move(*offspring.memory);
+  const auto first_title = static_cast<std::uint32_t>(experiment.parent_selection ? experiment.notes.size() : 0);
+  for (Child& made : offspring.children) {
     Individual newborn;
     newborn.id = nursery.next_id();
     newborn.born = newborn.origin = brood.generation;
@@ -260,6 +246,8 @@ void add_made(const Brood& brood, std::uint32_t count, Nursery& nursery) {
     }
     newborn.made_by = experiment.child_maker;
     newborn.genome = std::move(made.genome);
+    for (const ChildNote& note : made.notes)
+      brood.remembered.notes.push_back({newborn.id, first_title + note.title, note.value});
     nursery.add(std::move(newborn));
   }
 }
@@ -288,9 +276,10 @@ Genome first_genome(const Experiment& experiment, const std::function<Rng(std::u
 
 std::vector<Individual> breed(const Experiment& experiment, const std::vector<Individual>& population,
                               std::uint32_t generation, std::uint32_t first_id, std::size_t count,
-                              std::span<const std::byte> memory, Workers* workers, std::span<const Migrant> migrants) {
+                              Remembered* remembered, Workers* workers, std::span<const Migrant> migrants) {
   const bool all_are_random = population.empty() && !experiment.makes_children();
-  const Brood brood{experiment, population, generation, first_id, memory, workers};
+  Remembered nothing;
+  const Brood brood{experiment, population, generation, first_id, remembered ? *remembered : nothing, workers};
   Nursery nursery(brood, count);
   add_immigrants(brood, migrants, count, nursery);
   const std::size_t places = count - nursery.count();
@@ -305,11 +294,12 @@ std::vector<Individual> breed(const Experiment& experiment, const std::vector<In
 }
 
 std::vector<Individual> children_of(const Experiment& experiment, const std::vector<Individual>& population,
-                                    const Couples& couples, std::uint32_t generation, std::uint32_t first_id,
+                                    std::span<const Couple> couples, std::uint32_t generation, std::uint32_t first_id,
                                     Workers* workers) {
-  const Brood brood{experiment, population, generation, first_id, {}, workers};
+  Remembered nothing;
+  const Brood brood{experiment, population, generation, first_id, nothing, workers};
   Nursery nursery(brood, couples.size());
-  add_children(brood, SelectionTable(population, experiment, generation, {}), couples, nursery);
+  add_children(brood, SelectionTable(population, experiment, generation), couples, nursery);
   return nursery.take();
 }
 

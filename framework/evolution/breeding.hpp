@@ -2,8 +2,8 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "archive/population.hpp"
@@ -17,8 +17,9 @@ Genome first_genome(const Experiment& experiment, const std::function<Rng(std::u
 
 /// Makes the `count` newborns of a generation, with ids from `first_id`: first the immigrants, whose genomes are those
 /// of the migrants, then children of the population, and as many random individuals as the experiment asks for.
-/// `memory` is what the selection operator remembers. Migrants with genes that an individual of the population or an
-/// earlier immigrant has are left out.
+/// `remembered` is what the selection operators remember; if one of them makes the children, it may replace its memory
+/// there, and its notes about them are added. Null: they remember nothing, and notes are lost. Migrants with genes that
+/// an individual of the population or an earlier immigrant has are left out.
 ///
 /// Children come from the experiment's variation. If the population is empty, all newborns are random individuals. A
 /// newborn that is genetically equal to a member of the population or to an earlier newborn is made again with other
@@ -29,15 +30,13 @@ Genome first_genome(const Experiment& experiment, const std::function<Rng(std::u
 /// makes them all.
 std::vector<Individual> breed(const Experiment& experiment, const std::vector<Individual>& population,
                               std::uint32_t generation, std::uint32_t first_id, std::size_t count,
-                              std::span<const std::byte> memory = {}, Workers* workers = nullptr,
+                              Remembered* remembered = nullptr, Workers* workers = nullptr,
                               std::span<const Migrant> migrants = {});
 
-/// Parents of a child: indices of the one whose place the child may take and of its mate.
-using Couples = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
-/// Makes a child of each couple of the population by the experiment's variation, as breed() does. The experiment must
-/// have variation (Experiment::makes_children() is false).
+/// Makes a child of each couple, which are indices into the population, by the experiment's variation, as breed() does.
+/// The experiment must have variation (Experiment::makes_children() is false).
 std::vector<Individual> children_of(const Experiment& experiment, const std::vector<Individual>& population,
-                                    const Couples& couples, std::uint32_t generation, std::uint32_t first_id,
+                                    std::span<const Couple> couples, std::uint32_t generation, std::uint32_t first_id,
                                     Workers* workers = nullptr);
 
 }  // namespace evodevo

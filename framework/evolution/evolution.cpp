@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <set>
+#include <map>
 #include <utility>
 
 #include "archive/archive_writer.hpp"
@@ -16,6 +15,7 @@
 #include "evolution/front_lives.hpp"
 #include "evolution/front_verification.hpp"
 #include "evolution/islands/migration.hpp"
+#include "evolution/selection_checks.hpp"
 #include "evolution/selection_table.hpp"
 #include "life/measurement/combining.hpp"
 
@@ -90,57 +90,31 @@ RecordedProvenances recorded_provenances(const Evaluator& evaluator, Archive& ar
   return RecordedProvenances(std::move(recorded));
 }
 
-constexpr std::size_t most_memory = std::size_t{128} << 20;  ///< of a selection operator, bytes; half of a row's limit
-
-/// Throws std::runtime_error if the memory or the notes of a selection operator cannot be kept.
-void check_remembered(const Survival& survival, const Experiment& experiment, std::size_t rows) {
-  if (survival.memory.size() > most_memory)
-    throw std::runtime_error("returned a memory of " + std::to_string(survival.memory.size()) +
-                             " bytes, expected at most " + std::to_string(most_memory));
-  std::set<std::pair<std::uint32_t, std::uint32_t>> noted;
-  for (const Note& note : survival.notes) {
-    if (note.row >= rows || note.title >= experiment.notes.size())
-      throw std::runtime_error("noted number " + std::to_string(note.title) + " about row " + std::to_string(note.row) +
-                               ", but notes() has " + std::to_string(experiment.notes.size()) +
-                               " numbers and the table has " + std::to_string(rows) + " rows, both counted from 0");
-    if (!std::isfinite(note.value))
-      throw std::runtime_error("noted " + experiment.notes[note.title].name + " = " + to_text(note.value) +
-                               " about row " + std::to_string(note.row) + ", expected a finite number");
-    if (!noted.emplace(note.row, note.title).second)
-      throw std::runtime_error("noted " + experiment.notes[note.title].name + " twice about row " +
-                               std::to_string(note.row) + ", expected one note for each row and number");
-  }
-}
-
 /// Returns what the selection operator has chosen, with its rows in ascending order.
 Survival chosen_survivors(const Experiment& experiment, const SelectionTable& table, std::uint32_t population,
                           Rng& rng) {
-  Survival survival = experiment.selection->survive(table.context(), population, rng);
-  std::vector<std::uint32_t>& rows = survival.rows;
-  std::sort(rows.begin(), rows.end());
-  const std::string expected = "; expected 1 to " + std::to_string(population) + " different rows of " +
-                               std::to_string(table.rows().size()) + ", numbered from 0";
-  if (rows.empty() || rows.size() > population)
-    throw std::runtime_error("chose " + std::to_string(rows.size()) + " survivors" + expected);
-  if (rows.back() >= table.rows().size())
-    throw std::runtime_error("chose row " + std::to_string(rows.back()) + " to survive" + expected);
-  if (const auto twin = std::adjacent_find(rows.begin(), rows.end()); twin != rows.end())
-    throw std::runtime_error("chose row " + std::to_string(*twin) + " twice to survive" + expected);
-  check_remembered(survival, experiment, table.rows().size());
+  Survival survival = experiment.selection->survivors(table.context(), population, rng);
+  check_survival(survival, {experiment.notes, experiment.selection->memory()}, table.context(), population);
+  std::sort(survival.rows.begin(), survival.rows.end());
   return survival;
 }
 
 /// Removes from `everyone` all individuals except the survivors, which stay in the order of birth. Adds the ids of the
-/// removed individuals to `dropped`. Replaces what the operator remembers, and its notes.
+/// removed individuals to `dropped`. Replaces what the operator remembers, if it returns something, and adds its notes,
+/// which replace those that it has made about its children.
 void select(std::vector<Individual>& everyone, const Experiment& experiment, std::uint32_t generation,
             std::vector<std::uint32_t>& dropped, Remembered& remembered) {
   const auto population = static_cast<std::uint32_t>(experiment.population);
-  const SelectionTable table(everyone, experiment, generation, remembered.memory);
+  const SelectionTable table(everyone, experiment, generation, remembered.memory.survivors);
   Rng rng(philox, {static_cast<std::uint64_t>(experiment.seed), generation, 0, rng_stream::survivors});
   Survival survival = call_operator(experiment.call_of(Selection::kind, 0),
                                     [&] { return chosen_survivors(experiment, table, population, rng); });
-  remembered = {std::move(survival.memory), {}};
-  for (const Note& note : survival.notes) remembered.notes.push_back({everyone[note.row].id, note.title, note.value});
+  if (survival.memory) remembered.memory.survivors = std::move(*survival.memory);
+  std::map<std::pair<std::uint32_t, std::uint32_t>, double> notes;
+  for (const NoteOf& note : remembered.notes) notes[{note.individual, note.title}] = note.value;
+  for (const Note& note : survival.notes) notes[{everyone[note.row].id, note.title}] = note.value;
+  remembered.notes.clear();
+  for (const auto& [place, value] : notes) remembered.notes.push_back({place.first, place.second, value});
   std::vector<Individual> survivors;
   for (std::uint32_t i = 0; i < everyone.size(); ++i) {
     if (std::binary_search(survival.rows.begin(), survival.rows.end(), i))
@@ -149,11 +123,6 @@ void select(std::vector<Individual>& everyone, const Experiment& experiment, std
       dropped.push_back(everyone[i].id);
   }
   everyone = std::move(survivors);
-}
-
-/// Only the operator that chooses survivors has a memory.
-std::span<const std::byte> memory_of_breeder(const Experiment& experiment, const Remembered& remembered) {
-  return experiment.parent_selection ? std::span<const std::byte>() : remembered.memory;
 }
 
 /// Whether copies stay, because the operator that chooses survivors has made the children itself: it may count them.
@@ -243,10 +212,11 @@ void Evolution::State::make_generation(const std::vector<Migrant>& migrants, con
   const auto generation = static_cast<std::uint32_t>(summaries.size());
   const std::int64_t evaluations = summaries.empty() ? 0 : summaries.back().evaluations;
   const std::int64_t count = std::min(experiment.births(generation), experiment.evaluations - evaluations);
+  remembered.notes.clear();
   // each evaluation uses one id, so the next id is the number of evaluations so far
   std::vector<Individual> newborns =
       breed(experiment, population, generation, static_cast<std::uint32_t>(evaluations),
-            static_cast<std::size_t>(count), memory_of_breeder(experiment, remembered), &evaluator.workers(), migrants);
+            static_cast<std::size_t>(count), &remembered, &evaluator.workers(), migrants);
   time.breed += seconds_since(start);
   const std::vector<Individual*> elders = due_again(population, experiment, work->provenances);
   const std::uint64_t spring_evaluations =

@@ -27,7 +27,8 @@ FirstRobots first_robots(const Experiment& experiment) {
   std::string failure;
   std::size_t bodies = 0, with_muscles = 0, masses = 0, lost = 0;
   for (const Individual& robot : breed(experiment, {}, 0, 0, count)) {
-    const BuiltBody built = build_body(decoded(experiment, robot.genome, {.individual = robot.id}));
+    const BuiltBody built =
+        build_body(experiment, decoded(experiment, robot.genome, {.individual = robot.id}), {.individual = robot.id});
     if (!built.failure.empty()) {
       failure = built.failure;
       continue;

@@ -70,7 +70,7 @@ double violation(const Result& result, const Experiment& experiment) {
 }
 
 SelectionTable::SelectionTable(const std::vector<Individual>& individuals, const Experiment& experiment,
-                               std::uint32_t generation, std::span<const std::byte> memory)
+                               std::uint32_t generation, const SelectionMemory& memory)
     : descriptors_(descriptors_of(experiment)),
       values_(individuals.size()),
       rows_(individuals.size()),

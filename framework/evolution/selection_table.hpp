@@ -7,6 +7,8 @@
 
 namespace evodevo {
 
+inline const SelectionMemory no_memory;
+
 /// What a selection operator sees of individuals, with the numbers that its rows refer to. Row i belongs to
 /// `individuals[i]`. Ages are those that the individuals have in `generation`. An individual that was born in
 /// `generation` challenges its parent, if the parent is in the table. Individuals, experiment and memory must outlive
@@ -14,7 +16,7 @@ namespace evodevo {
 class SelectionTable {
  public:
   SelectionTable(const std::vector<Individual>& individuals, const Experiment& experiment, std::uint32_t generation,
-                 std::span<const std::byte> memory = {});
+                 const SelectionMemory& memory = no_memory);
   SelectionTable(const SelectionTable&) = delete;  // because the rows refer to values_
   SelectionTable& operator=(const SelectionTable&) = delete;
 

@@ -156,17 +156,38 @@ RecordRequest cycle_request(const Experiment& experiment, std::int64_t cycle, st
   return all;
 }
 
+namespace {
+
+std::vector<std::string> checked(std::vector<std::string> names, const char* function) {
+  for (auto name = names.begin(); name != names.end(); ++name) {
+    const std::string place = std::string(function) + "() gives the name \"" + printable(*name) + "\"";
+    if (name->empty()) throw std::invalid_argument(place + "; expected a name that is not empty");
+    if (std::find(names.begin(), name, *name) != name)
+      throw std::invalid_argument(place + " twice; expected different names");
+  }
+  return names;
+}
+
+}  // namespace
+
+std::vector<NoteTitle> Experiment::note_titles() const {
+  std::vector<NoteTitle> titles = notes;
+  titles.insert(titles.end(), child_notes.begin(), child_notes.end());
+  return titles;
+}
+
 MemoryNames memory_names(const Devo& op) {
-  const auto checked = [](std::vector<std::string> names, const char* function) {
-    for (auto name = names.begin(); name != names.end(); ++name) {
-      const std::string place = std::string(function) + "() gives the name \"" + printable(*name) + "\"";
-      if (name->empty()) throw std::invalid_argument(place + "; expected a name that is not empty");
-      if (std::find(names.begin(), name, *name) != name)
-        throw std::invalid_argument(place + " twice; expected different names");
-    }
-    return names;
-  };
-  return {checked(op.mass_memory(), "mass_memory"), checked(op.spring_memory(), "spring_memory")};
+  MemoryNames names{checked(op.mass_memory(), "mass_memory"), checked(op.spring_memory(), "spring_memory"),
+                    checked(op.body_memory(), "body_memory")};
+  for (const std::string& needed : op.traits().needs_at_birth)
+    if (std::ranges::find(names.springs, needed) == names.springs.end())
+      throw std::invalid_argument("Traits::needs_at_birth names \"" + printable(needed) +
+                                  "\", which spring_memory() does not declare");
+  return names;
+}
+
+std::vector<std::string> spring_memory_names(const Encoding& encoding) {
+  return checked(encoding.spring_memory(), "spring_memory");
 }
 
 MemoryNames memory_names(const Experiment& experiment, std::size_t index) {

@@ -67,7 +67,10 @@ struct Experiment : Settings {
   std::unique_ptr<Selection> selection;         ///< chooses survivors and, if there is no other, parents
   std::unique_ptr<Selection> parent_selection;  ///< chooses parents; null: `selection` does
   std::string child_maker;  ///< name of the one that makes the children itself, without variation; empty: none does
-  std::vector<NoteTitle> notes;  ///< what `selection` may note about individuals
+  std::vector<NoteTitle> notes;        ///< what `selection` may note about individuals
+  std::vector<NoteTitle> child_notes;  ///< what `parent_selection` may note about the children that it makes
+  /// All of these notes: `notes`, and then `child_notes`.
+  std::vector<NoteTitle> note_titles() const;
   /// Whether operators develop bodies, or changes replace theirs.
   bool develops_by_operators() const {
     return development.cycles > 0 && !devo.empty() && development.control != Control::no_change;
@@ -101,13 +104,15 @@ RecordRequest devo_request(const Experiment& experiment, std::size_t index);
 /// Returns the records that the devo operators which are applied after a cycle ask for, all together: all of these
 /// operators, or those from index `first` on.
 RecordRequest cycle_request(const Experiment& experiment, std::int64_t cycle, std::size_t first = 0);
-/// The names of the numbers that a devo operator remembers about each mass and about each spring.
+/// The names of the numbers that a devo operator remembers about each mass, about each spring and about the body.
 struct MemoryNames {
-  std::vector<std::string> masses, springs;
+  std::vector<std::string> masses, springs, body;
 };
 /// Returns the names that a devo operator declares. Throws std::invalid_argument if it gives a name twice, or an empty
-/// one.
+/// one, or needs something at birth that it does not declare.
 MemoryNames memory_names(const Devo& op);
+/// Returns the names of what an encoding gives springs to remember. Throws std::invalid_argument likewise.
+std::vector<std::string> spring_memory_names(const Encoding& encoding);
 /// Returns the names that the devo operator with this index (from 0) declares.
 MemoryNames memory_names(const Experiment& experiment, std::size_t index);
 /// Returns what the fitness operator with this index (from 0) asks to observe.

@@ -53,9 +53,24 @@ Blueprint decoded(const Experiment& experiment, const Genome& genome, CallSubjec
     const Layout& layout = experiment.own_layouts.front();
     const Genome own = part_of(genome, experiment.layout, {0}, layout);
     Blueprint blueprint = experiment.encoding->decode(own, layout, experiment.context);
-    if (blueprint.failure.empty()) check_blueprint(blueprint, experiment.context);
+    if (blueprint.failure.empty()) check_blueprint(blueprint, experiment.context, experiment.encoding->spring_memory());
     return blueprint;
   });
+}
+
+namespace {
+
+/// Lets the experiment's encoding complete a blueprint whose neighbours have been joined.
+void complete_by_encoding(const Experiment& experiment, CallSubject subject, Blueprint& blueprint) {
+  call_operator(experiment.call_of(Encoding::kind, 0, subject),
+                [&] { complete(*experiment.encoding, experiment.context, blueprint); });
+}
+
+}  // namespace
+
+BuiltBody build_body(const Experiment& experiment, Blueprint blueprint, CallSubject subject) {
+  return build_body(std::move(blueprint),
+                    [&](std::size_t, Blueprint& joined) { complete_by_encoding(experiment, subject, joined); });
 }
 
 Birth::Birth(const Experiment& experiment, const LifeSimulation& simulation)
@@ -72,8 +87,11 @@ std::vector<BuiltBody> Birth::build(std::span<const Newborn> newborns) const {
     const Newborn& newborn = newborns[first[i]];
     blueprints[i] = decoded(experiment_, *newborn.genome, {.individual = newborn.id});
   });
-  std::vector<BuiltBody> built =
-      build_bodies(std::move(blueprints), simulation_.simulator().neighbours(), simulation_.simulator().workers());
+  const auto after_joining = [&](std::size_t i, Blueprint& blueprint) {
+    complete_by_encoding(experiment_, {.individual = newborns[first[i]].id}, blueprint);
+  };
+  std::vector<BuiltBody> built = build_bodies(std::move(blueprints), simulation_.simulator().neighbours(),
+                                              simulation_.simulator().workers(), after_joining);
   if (first.size() == newborns.size()) return built;
   std::vector<BuiltBody> of_each;
   for (std::size_t group = 0; group < first.size(); ++group) {
@@ -113,6 +131,7 @@ std::vector<Life> Birth::begin_all(std::vector<BuiltBody> built, std::span<const
       lives[i].end(Status::invalid, std::move(built[i].failure));
     }
     lives[i].newborn = newborns[i];
+    lives[i].scenario = scenario;
     if (scenario != nullptr) lives[i].newborn.records.clear();
     if (lives[i].alive() && simulation_.conditions().birth_noise > 0) add_noise(lives[i]);
   });
@@ -148,8 +167,7 @@ Life Birth::life_of(BuiltBody built, State state, const Scene& scene) const {
   Life life;
   life.scene = &scene;
   LivingBody& living = life.living;
-  for (const MemoryNames& names : names_)
-    living.memory.push_back(memory_at_birth(names, built.mass_memory, built.body));
+  for (const MemoryNames& names : names_) living.memory.push_back(memory_at_birth(names, built));
   living.body = std::move(built.body);
   living.state = std::move(state);
   living.numbers =

@@ -14,6 +14,10 @@ namespace evodevo {
 /// names the encoding if the encoding throws or the blueprint is malformed (check_blueprint()).
 Blueprint decoded(const Experiment& experiment, const Genome& genome, CallSubject subject = {});
 
+/// Builds the body of a blueprint that decoded() has returned. Throws a std::runtime_error that names the encoding if
+/// it throws when it completes the blueprint.
+BuiltBody build_body(const Experiment& experiment, Blueprint blueprint, CallSubject subject = {});
+
 /// Makes lives from genomes or bodies. It builds each body, adds the scene's payload, puts the body on the ground and
 /// chooses its time step. Operators remember what the encoding gives the masses to remember, or 0. The life of a body
 /// that cannot be built or simulated ends as invalid. Experiment and simulation must outlive this object and the lives.

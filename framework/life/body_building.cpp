@@ -17,21 +17,35 @@
 namespace evodevo {
 namespace {
 
-void leave_out_air(Body& body) {
-  std::erase_if(body.springs, [&](const Spring& spring) {
-    const bool air = is_air(body.materials[spring.material]);
-    if (air) {
-      ++body.masses[spring.a].air_contacts;
-      ++body.masses[spring.b].air_contacts;
-    }
-    return air;
-  });
+/// Leaves only the numbers of the items with these indices.
+void keep_memory(const std::vector<std::uint32_t>& kept, MemoryByName& memory) {
+  for (auto& [name, numbers] : memory) {
+    for (std::size_t i = 0; i < kept.size(); ++i) numbers[i] = numbers[kept[i]];
+    numbers.resize(kept.size());
+  }
 }
 
-void set_size(Spring& spring, const Size& a, const Size& b) {
-  const double start = (a.start + b.start) / 2, end = (a.end + b.end) / 2;
-  spring.rest_length *= start;
-  spring.growth = static_cast<float>(end / start);
+/// Removes the springs that `goes` names, and what they remember.
+void erase_springs(Blueprint& blueprint, const auto& goes) {
+  std::vector<Spring>& springs = blueprint.body.springs;
+  if (!blueprint.spring_memory.empty()) {
+    std::vector<std::uint32_t> kept;
+    for (std::uint32_t i = 0; i < springs.size(); ++i)
+      if (!goes(springs[i])) kept.push_back(i);
+    keep_memory(kept, blueprint.spring_memory);
+  }
+  std::erase_if(springs, goes);
+}
+
+void leave_out_air(Blueprint& blueprint) {
+  Body& body = blueprint.body;
+  const auto is_of_air = [&](const Spring& spring) { return is_air(body.materials[spring.material]); };
+  for (const Spring& spring : body.springs) {
+    if (!is_of_air(spring)) continue;
+    ++body.masses[spring.a].air_contacts;
+    ++body.masses[spring.b].air_contacts;
+  }
+  erase_springs(blueprint, is_of_air);
 }
 
 /// Returns the pairs of masses that springs join, in ascending order. The lower index of each pair comes first.
@@ -73,7 +87,6 @@ class MeanMaterials {
 
 void join(Blueprint& blueprint, std::span<const IndexPair> pairs) {
   Body& body = blueprint.body;
-  const std::vector<Size>& sizes = blueprint.sizes;
   const std::vector<IndexPair> joined_already = joined_pairs(body.springs);
   body.springs.reserve(body.springs.size() + pairs.size());
   MeanMaterials materials(body.materials);
@@ -82,8 +95,8 @@ void join(Blueprint& blueprint, std::span<const IndexPair> pairs) {
     const Mass &mass_a = body.masses[a], &mass_b = body.masses[b];
     body.springs.push_back(
         {a, b, norm(mass_a.rest - mass_b.rest), materials.index_between(mass_a.material, mass_b.material)});
-    if (!sizes.empty()) set_size(body.springs.back(), sizes[a], sizes[b]);
   }
+  for (auto& [name, numbers] : blueprint.spring_memory) numbers.resize(body.springs.size(), 0.0);
 }
 
 /// Returns the leader of each mass's piece. A piece is a set of masses that springs connect directly or indirectly; its
@@ -116,7 +129,8 @@ std::uint32_t largest_piece(const std::vector<std::uint32_t>& leader) {
 }
 
 /// Removes all pieces except the largest. Sets the masses of `built` that stay, and counts those in other pieces.
-void keep_largest_piece(Body& body, BuiltBody& built) {
+void keep_largest_piece(Blueprint& blueprint, BuiltBody& built) {
+  Body& body = blueprint.body;
   const std::vector<std::uint32_t> leader = pieces(body);
   const std::uint32_t largest = largest_piece(leader);
   std::vector<bool> is_joined(body.masses.size(), false);
@@ -132,7 +146,7 @@ void keep_largest_piece(Body& body, BuiltBody& built) {
     built.kept.push_back(i);
     masses.push_back(body.masses[i]);
   }
-  std::erase_if(body.springs, [&](const Spring& spring) { return leader[spring.a] != largest; });
+  erase_springs(blueprint, [&](const Spring& spring) { return leader[spring.a] != largest; });
   for (Spring& spring : body.springs) {
     spring.a = new_index[spring.a];
     spring.b = new_index[spring.b];
@@ -149,10 +163,6 @@ void place_on_origin(Body& body) {
 
 bool is_finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-bool is_sound(const Size& size) {
-  return size.start > 0 && size.end > 0 && std::isfinite(size.start) && std::isfinite(size.end);
-}
-
 /// Returns the reason why a blueprint cannot become a body, or an empty text if no such reason is known yet.
 std::string blueprint_failure(const Blueprint& blueprint) {
   const std::vector<Mass>& masses = blueprint.body.masses;
@@ -162,22 +172,12 @@ std::string blueprint_failure(const Blueprint& blueprint) {
     return "no body: the position of a mass is not finite";
   if (!std::all_of(blueprint.paired_at.begin(), blueprint.paired_at.end(), is_finite))
     return "no body: the position at which a mass is paired with its neighbours is not finite";
-  if (!std::all_of(blueprint.sizes.begin(), blueprint.sizes.end(), is_sound))
-    return "no body: the size of a mass is not finite or not above 0";
   return "";
 }
 
 /// The positions of the masses for the search of neighbours, m.
 std::vector<Vec3> pairing_positions(const Blueprint& blueprint) {
   return blueprint.paired_at.empty() ? rest_positions(blueprint.body) : blueprint.paired_at;
-}
-
-/// Leaves only the numbers of the masses that stay.
-void keep_memory(const std::vector<std::uint32_t>& kept, std::map<std::string, std::vector<double>>& mass_memory) {
-  for (auto& [name, numbers] : mass_memory) {
-    for (std::size_t i = 0; i < kept.size(); ++i) numbers[i] = numbers[kept[i]];
-    numbers.resize(kept.size());
-  }
 }
 
 /// Returns the identities of the masses that stay: those of the blueprint or, if it has none, their indices in it.
@@ -190,11 +190,12 @@ std::vector<std::uint64_t> kept_identities(const std::vector<std::uint32_t>& kep
 
 /// Completes the body of a blueprint whose neighbours have been joined.
 BuiltBody finish(Blueprint blueprint) {
+  if (std::string failure = blueprint_failure(blueprint); !failure.empty()) return {.failure = std::move(failure)};
   Body& body = blueprint.body;
-  leave_out_air(body);
+  leave_out_air(blueprint);
   if (body.springs.empty()) return {.failure = "no springs"};
   BuiltBody built;
-  keep_largest_piece(body, built);
+  keep_largest_piece(blueprint, built);
   if (!has_extent(rest_positions(body))) return {.failure = "no extent"};
   for (Spring& spring : body.springs) spring.first_length = spring.rest_length;
   place_on_origin(body);
@@ -202,6 +203,7 @@ BuiltBody finish(Blueprint blueprint) {
   built.identities = kept_identities(built.kept, blueprint.identities);
   built.body = std::move(body);
   built.mass_memory = std::move(blueprint.mass_memory);
+  built.spring_memory = std::move(blueprint.spring_memory);
   return built;
 }
 
@@ -236,18 +238,55 @@ void check_identities(const Blueprint& blueprint) {
                                 std::to_string(twin->first) + "; expected different identities");
 }
 
-/// Throws unless the blueprint gives a finite number for each mass under every name of its memory.
-void check_memory(const Blueprint& blueprint) {
-  const std::size_t masses = blueprint.body.masses.size();
-  for (const auto& [name, numbers] : blueprint.mass_memory) {
-    const std::string place = "mass_memory[\"" + printable(name) + "\"]";
-    if (numbers.size() != masses)
+/// Throws unless a memory has a finite number for each of `count` items under every name. `item` is "mass" or "spring".
+void check_memory(const MemoryByName& memory, const std::string& item, std::size_t count) {
+  for (const auto& [name, numbers] : memory) {
+    const std::string place = item + "_memory[\"" + printable(name) + "\"]";
+    if (numbers.size() != count)
       throw std::invalid_argument(place + " has " + std::to_string(numbers.size()) + " numbers for " +
-                                  std::to_string(masses) + " masses; expected one for each");
-    for (std::size_t i = 0; i < masses; ++i)
+                                  std::to_string(count) + (item == "mass" ? " masses" : " springs") +
+                                  "; expected one for each");
+    for (std::size_t i = 0; i < count; ++i)
       if (!std::isfinite(numbers[i]))
-        throw std::invalid_argument(place + " of mass " + std::to_string(i) + " is " + to_text(numbers[i]) +
+        throw std::invalid_argument(place + " of " + item + " " + std::to_string(i) + " is " + to_text(numbers[i]) +
                                     "; expected a finite number");
+  }
+}
+
+/// Throws unless the encoding declares the names of what springs remember.
+void check_spring_memory(const Blueprint& blueprint, const std::vector<std::string>& names) {
+  check_memory(blueprint.spring_memory, "spring", blueprint.body.springs.size());
+  for (const auto& [name, numbers] : blueprint.spring_memory)
+    if (std::ranges::find(names, name) == names.end())
+      throw std::invalid_argument("spring_memory[\"" + printable(name) +
+                                  "\"] is not declared; name it in Encoding::spring_memory()");
+}
+
+/// Throws, naming an item of the blueprint and its fault, unless `holds`.
+void require(bool holds, const char* what, std::size_t index, const std::string& fault) {
+  if (!holds) throw std::invalid_argument(std::string(what) + " " + std::to_string(index) + " " + fault);
+}
+
+void require_below(std::int64_t count, std::int64_t number, const char* what, std::size_t index, const char* has,
+                   const char* counted) {
+  if (number >= count)
+    throw std::invalid_argument(std::string(what) + " " + std::to_string(index) + " " + has + " " +
+                                std::to_string(number) + ", but there are only " + std::to_string(count) + " " +
+                                counted + ", numbered from 0");
+}
+
+void check_springs(const Body& body) {
+  const auto materials = static_cast<std::int64_t>(body.materials.size()),
+             masses = static_cast<std::int64_t>(body.masses.size());
+  for (std::size_t i = 0; i < body.springs.size(); ++i) {
+    const Spring& spring = body.springs[i];
+    require_below(masses, std::max(spring.a, spring.b), "spring", i, "joins mass", "masses");
+    require(spring.a != spring.b, "spring", i, "joins a mass to itself");
+    require(spring.rest_length >= 0 && std::isfinite(spring.rest_length), "spring", i,
+            "has a rest length that is not finite or is below 0");
+    require_below(materials, spring.material, "spring", i, "has material", "materials");
+    require(spring.stiffness_factor > 0 && std::isfinite(body.stiffness(spring)), "spring", i,
+            "has a stiffness_factor that is not above 0, or a stiffness that is not finite");
   }
 }
 
@@ -265,20 +304,10 @@ bool has_extent(std::span<const Vec3> positions) {
   return !(bounding_box(positions).longest_side() < rounding);
 }
 
-void check_blueprint(const Blueprint& blueprint, const EncodingContext& context) {
-  const auto require = [](bool holds, const char* what, std::size_t index, const auto& fault) {
-    if (!holds) throw std::invalid_argument(std::string(what) + " " + std::to_string(index) + " " + fault);
-  };
-  const auto require_below = [](std::int64_t count, std::int64_t number, const char* what, std::size_t index,
-                                const char* has, const char* counted) {
-    if (number >= count)
-      throw std::invalid_argument(std::string(what) + " " + std::to_string(index) + " " + has + " " +
-                                  std::to_string(number) + ", but there are only " + std::to_string(count) + " " +
-                                  counted + ", numbered from 0");
-  };
+void check_blueprint(const Blueprint& blueprint, const EncodingContext& context,
+                     const std::vector<std::string>& names) {
   const Body& body = blueprint.body;
-  const auto materials = static_cast<std::int64_t>(body.materials.size()),
-             masses = static_cast<std::int64_t>(body.masses.size());
+  const auto materials = static_cast<std::int64_t>(body.materials.size());
   for (std::size_t i = 0; i < context.materials.size(); ++i)
     require(i < body.materials.size() && body.materials[i] == context.materials[i], "material", i,
             "is not that of the encoding context");
@@ -293,19 +322,7 @@ void check_blueprint(const Blueprint& blueprint, const EncodingContext& context)
     require(blueprint.neighbours == 0 || mass.material != no_material, "mass", i,
             "has no material, which the springs to its neighbours would have; give it one, or set neighbours = 0");
   }
-  for (std::size_t i = 0; i < body.springs.size(); ++i) {
-    const Spring& spring = body.springs[i];
-    require_below(masses, std::max(spring.a, spring.b), "spring", i, "joins mass", "masses");
-    require(spring.a != spring.b, "spring", i, "joins a mass to itself");
-    require(spring.rest_length >= 0 && std::isfinite(spring.rest_length), "spring", i,
-            "has a rest length that is not finite or is below 0");
-    require_below(materials, spring.material, "spring", i, "has material", "materials");
-    require(spring.growth > 0 && std::isfinite(spring.growth), "spring", i,
-            "has a growth that is not finite or not above 0");
-    require(std::isfinite(spring.phase_growth), "spring", i, "has a phase_growth that is not finite");
-    require(spring.stiffness_factor > 0 && std::isfinite(body.stiffness(spring)), "spring", i,
-            "has a stiffness_factor that is not above 0, or a stiffness that is not finite");
-  }
+  check_springs(body);
   if (const std::optional<std::size_t> twin = blueprint.parallel ? std::nullopt : doubled_spring(body)) {
     const Spring& spring = body.springs[*twin];
     throw std::invalid_argument("spring " + std::to_string(*twin) + " joins masses " + std::to_string(spring.a) +
@@ -317,20 +334,34 @@ void check_blueprint(const Blueprint& blueprint, const EncodingContext& context)
                                   std::to_string(body.masses.size()) + " masses; expected one for each mass, or none");
   };
   require_one_for_each_mass(blueprint.paired_at, "positions to pair at");
-  require_one_for_each_mass(blueprint.sizes, "sizes");
   require_one_for_each_mass(blueprint.origins, "origins");
   require_one_for_each_mass(blueprint.identities, "identities");
   check_identities(blueprint);
-  check_memory(blueprint);
+  check_memory(blueprint.mass_memory, "mass", body.masses.size());
+  check_spring_memory(blueprint, names);
 }
 
-BuiltBody build_body(Blueprint blueprint) {
+void complete(const Encoding& encoding, const EncodingContext& context, Blueprint& blueprint) {
+  const std::size_t masses = blueprint.body.masses.size(), springs = blueprint.body.springs.size();
+  encoding.joined(blueprint);
+  if (!blueprint.failure.empty()) return;
+  const Body& body = blueprint.body;
+  if (body.masses.size() != masses || body.springs.size() != springs)
+    throw std::invalid_argument("joined() leaves " + std::to_string(body.masses.size()) + " masses and " +
+                                std::to_string(body.springs.size()) + " springs of " + std::to_string(masses) +
+                                " and " + std::to_string(springs) + "; expected the same ones");
+  check_blueprint(blueprint, context, encoding.spring_memory());
+}
+
+BuiltBody build_body(Blueprint blueprint, const AfterJoining& after_joining) {
   if (std::string failure = blueprint_failure(blueprint); !failure.empty()) return {.failure = std::move(failure)};
   join(blueprint, nearest_pairs(pairing_positions(blueprint), blueprint.neighbours));
+  if (blueprint.neighbours > 0 && after_joining) after_joining(0, blueprint);
   return finish(std::move(blueprint));
 }
 
-std::vector<BuiltBody> build_bodies(std::vector<Blueprint> blueprints, NeighbourSearch& search, Workers& workers) {
+std::vector<BuiltBody> build_bodies(std::vector<Blueprint> blueprints, NeighbourSearch& search, Workers& workers,
+                                    const AfterJoining& after_joining) {
   std::vector<BuiltBody> built(blueprints.size());
   std::vector<std::vector<Vec3>> positions(blueprints.size());
   workers.for_each(blueprints.size(), [&](std::size_t i) {
@@ -342,6 +373,7 @@ std::vector<BuiltBody> build_bodies(std::vector<Blueprint> blueprints, Neighbour
   search.find(clouds, workers, [&](std::size_t i, std::span<const IndexPair> pairs) {
     if (!built[i].failure.empty()) return;
     join(blueprints[i], pairs);
+    if (blueprints[i].neighbours > 0 && after_joining) after_joining(i, blueprints[i]);
     built[i] = finish(std::move(blueprints[i]));
   });
   return built;

@@ -10,9 +10,9 @@
 namespace evodevo {
 namespace {
 
-std::vector<std::uint8_t> marked(const std::vector<std::uint32_t>& indices, std::size_t count) {
+std::vector<std::uint8_t> marked(const std::vector<Removal>& removals, std::size_t count) {
   std::vector<std::uint8_t> marks(count, 0);
-  for (const std::uint32_t index : indices) marks.at(index) = 1;
+  for (const Removal& removal : removals) marks.at(removal.index) = 1;
   return marks;
 }
 
@@ -101,12 +101,13 @@ class RandomPlacement {
         kinds_(kinds_of(body_)),
         surplus_(surplus),
         chance_(chance),
+        out_(body_),
         mass_goes_(body_.masses.size(), 0),
         spring_goes_(body_.springs.size(), 0),
         staying_springs_(kinds_.size(), chance, [this](std::uint32_t s) { return chance_.number_of(s, "spring"); }) {}
 
   Edits edits() {
-    out_.growth = amount_.growth;
+    out_.scaling = amount_.scaling;
     remove_masses();
     remove_springs();
     change_springs();
@@ -121,7 +122,7 @@ class RandomPlacement {
     for (std::uint32_t i = 0; i < body_.masses.size(); ++i) masses.add(body_.masses[i].material, i);
     for (const std::optional<Material>& material : amount_.masses_gone)
       if (const auto mass = masses.draw(index_in_body(material))) {
-        out_.removed_masses.push_back(*mass);
+        out_.remove_mass(*mass);
         mass_goes_[*mass] = 1;
       }
   }
@@ -129,7 +130,7 @@ class RandomPlacement {
   void remove_springs() {
     for (const std::int32_t kind : springs_due())
       if (const auto spring = staying_springs_.draw(kind)) {
-        out_.removed_springs.push_back(*spring);
+        out_.remove_spring(*spring);
         spring_goes_[*spring] = 1;
       }
   }
@@ -160,10 +161,9 @@ class RandomPlacement {
   void change_springs() {
     for (const Amount::SpringChange& change : amount_.springs_changed)
       if (const auto spring = staying_springs_.draw(kind_in_body(change.before))) {
-        ChangedSpring& changed = out_.changed_springs.emplace_back(ChangedSpring{.spring = *spring});
-        changed.material = change.material;
-        changed.stiffness_factor = change.stiffness_factor;
+        ChangedSpring changed{.material = change.material, .stiffness_factor = change.stiffness_factor};
         if (change.length) changed.rest_length = *change.length * body_.springs[*spring].rest_length;
+        out_.change_spring(*spring, changed);
       }
   }
 
@@ -174,7 +174,7 @@ class RandomPlacement {
       const Vec3 position{rng.uniform(low.x, high.x), rng.uniform(low.y, high.y), rng.uniform(low.z, high.z)};
       const std::int32_t material = index_in_body(mass.material);
       const bool is_known = material < static_cast<std::int32_t>(body_.materials.size());
-      out_.new_masses.push_back({position, mass.mass, is_known ? material : no_material});
+      out_.add_mass(position, {.mass = mass.mass, .material = is_known ? material : no_material});
     }
   }
 
@@ -199,7 +199,7 @@ class RandomPlacement {
         const auto [a, b] = std::minmax(first, second);
         if (a == b || !(norm(position(b) - position(a)) > 0) || partners.joined(a, b)) continue;
         partners.join(a, b);
-        out_.new_springs.push_back({a, b, spring.kind.material, {}, spring.kind.stiffness_factor});
+        out_.join(a, b, spring.kind.material, {.stiffness_factor = spring.kind.stiffness_factor});
         break;
       }
   }
@@ -254,7 +254,7 @@ class RandomPlacement {
 Amount amount_of(const Edits& edits, const Body& body, std::uint32_t op) {
   const std::vector<std::uint8_t> mass_goes = marked(edits.removed_masses, body.masses.size()),
                                   spring_goes = marked(edits.removed_springs, body.springs.size());
-  Amount amount{.op = op, .growth = edits.growth};
+  Amount amount{.op = op, .scaling = edits.scaling};
   const auto kind_of = [&](const Spring& spring) {
     return Amount::SpringKind{body.materials[spring.material], spring.stiffness_factor};
   };
@@ -271,7 +271,7 @@ Amount amount_of(const Edits& edits, const Body& body, std::uint32_t op) {
     amount.springs_changed.push_back({kind_of(spring), length, change.material, change.stiffness_factor});
   }
   for (const NewMass& mass : edits.new_masses)
-    amount.masses_come.push_back({mass.mass, mass_material(body, mass.material)});
+    amount.masses_come.push_back({mass.mass.value(), mass_material(body, mass.material)});
   const auto new_mass = [&](std::uint32_t end) -> std::optional<std::uint32_t> {
     if (end < body.masses.size()) return std::nullopt;
     return static_cast<std::uint32_t>(end - body.masses.size());
@@ -289,8 +289,8 @@ std::vector<Amount> Yoke::amounts_after(int cycle) {
   std::vector<Amount> amounts;
   for (; next_ < changes_.size() && changes_[next_].cycle == static_cast<std::uint32_t>(cycle); ++next_) {
     const Change& change = changes_[next_];
-    if (change.op) amounts.push_back(amount_of(change.edits, body_, *change.op));
-    apply(change.edits, body_);
+    if (change.op) amounts.push_back(amount_of(change.edits, living_.body, *change.op));
+    apply(change.edits, living_, change.op);
   }
   std::stable_partition(amounts.begin(), amounts.end(),
                         [](const Amount& amount) { return !amount.masses_gone.empty(); });

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "evodevo/helpers/chance.hpp"
-#include "life/life_record.hpp"
+#include "life/edits.hpp"
 
 namespace evodevo {
 
@@ -29,7 +29,7 @@ struct Amount {
   };
 
   std::uint32_t op = 0;                              ///< index into the experiment's devo operators
-  std::optional<Growth> growth;                      ///< growth of all springs
+  std::optional<Scaling> scaling;                    ///< of all rest lengths
   std::vector<SpringKind> springs_gone;              ///< removed springs and springs of removed masses
   std::vector<std::optional<Material>> masses_gone;  ///< materials of removed masses; nullopt for no material
   std::vector<SpringChange> springs_changed;
@@ -50,7 +50,7 @@ Amount amount_of(const Edits& edits, const Body& body, std::uint32_t op);
 /// - A new spring joins two random masses that stay and are not joined yet. An end that is at a new mass in `amount` is
 ///   at the corresponding new mass here. The spring exerts no force at first. If no free pair is found, the spring is
 ///   left out.
-/// - Growth stays the same, because it applies to all springs.
+/// - A change of all rest lengths by one rule stays the same.
 ///
 /// With inherited draws, all of this follows from the identities of masses, so that the places are as much inherited as
 /// those that the operators choose.
@@ -64,7 +64,7 @@ Edits at_random_places(const Amount& amount, const DevoContext& context, std::si
 /// life is changed by the same amounts.
 class Yoke {
  public:
-  Yoke(Body born, const LifeRecord& record) : body_(std::move(born)), changes_(record.changes()) {}
+  Yoke(LivingBody born, const LifeRecord& record) : living_(std::move(born)), changes_(record.changes()) {}
 
   /// Returns the amounts that the operators changed after a cycle. To be called for each cycle in ascending order.
   /// Pieces that were torn off do not count. Amounts with removed masses come first: if too many springs are removed
@@ -74,7 +74,7 @@ class Yoke {
   std::size_t surplus = 0;  ///< surplus of the second life; see at_random_places()
 
  private:
-  Body body_;
+  LivingBody living_;
   std::vector<Change> changes_;
   std::size_t next_ = 0;  ///< index into `changes_`
 };

@@ -7,6 +7,7 @@
 #include "analysis/ground.hpp"
 #include "base/input_error.hpp"
 #include "base/philox.hpp"
+#include "base/text.hpp"
 #include "core/skip_shift.hpp"
 #include "life/body_building.hpp"
 #include "threads/parallel.hpp"
@@ -18,7 +19,7 @@ namespace {
 /// without force adds little.
 bool adds_energy(const Change& change) {
   const Edits& edits = change.edits;
-  return edits.growth || !edits.changed_springs.empty() || edits.new_masses.size() > edits.removed_masses.size() ||
+  return edits.scaling || !edits.changed_springs.empty() || edits.new_masses.size() > edits.removed_masses.size() ||
          change.lengths_given;
 }
 
@@ -70,7 +71,7 @@ void DevelopmentLoop::run(std::span<Life> lives, const Progress& progress) const
   run_cycles(lives, observed, change, progress);
 }
 
-std::vector<std::optional<Yoke>> DevelopmentLoop::yokes_of(std::span<const Life> lives) const {
+std::vector<std::optional<Yoke>> DevelopmentLoop::yokes_of(std::span<Life> lives) const {
   std::vector<std::size_t> yoked;
   std::vector<Life> before;
   for (std::size_t i = 0; i < lives.size(); ++i) {
@@ -81,8 +82,10 @@ std::vector<std::optional<Yoke>> DevelopmentLoop::yokes_of(std::span<const Life>
   const auto change = [&](std::size_t i, int cycle) { apply_operators(before[i], cycle); };
   run_cycles(before, true, change, [](double) {});
   std::vector<std::optional<Yoke>> yokes(lives.size());
-  for (std::size_t i = 0; i < before.size(); ++i)
-    yokes[yoked[i]].emplace(lives[yoked[i]].living.body, before[i].record);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    yokes[yoked[i]].emplace(lives[yoked[i]].living, before[i].record);
+    if (before[i].given_up) lives[yoked[i]].end(Status::invalid, before[i].result.reason);
+  }
   return yokes;
 }
 
@@ -99,6 +102,7 @@ void DevelopmentLoop::run_cycles(std::span<Life> lives, bool observed, const Act
       if (!lives[i].alive()) return;
       record_masses(request, lives[i].living);
       change(i, cycle);
+      if (!lives[i].alive()) return;
       if (development.reset) allow_energy(lives[i], energy_of(lives[i]), [&] { return_to_rest(lives[i]); });
       if (lives[i].living.body.springs.empty())
         lives[i].end(Status::invalid, "no springs");
@@ -161,8 +165,8 @@ void DevelopmentLoop::apply_operators(Life& life, int cycle) const {
   if (development.control == Control::no_change) return;
   if (development.control == Control::shuffled_stress) shuffle_records(life, cycle);
   for (std::size_t i = 0; i < experiment_.devo.size(); ++i)
-    if (experiment_.devo[i].schedule.contains(cycle)) apply_operator(life, cycle, i);
-  shed_loose_pieces(life, cycle);
+    if (life.alive() && experiment_.devo[i].schedule.contains(cycle)) apply_operator(life, cycle, i);
+  if (life.alive()) shed_loose_pieces(life, cycle);
 }
 
 void DevelopmentLoop::shuffle_records(Life& life, int cycle) const {
@@ -201,13 +205,20 @@ void DevelopmentLoop::apply_operator(Life& life, int cycle, std::size_t index) c
   DevoContext context = context_of(life, cycle, schedule, devo_request(experiment_, index), genome, own);
   context.mass_memory = memory.masses.view("mass");
   context.spring_memory = memory.springs.view("spring");
+  context.body_memory = {memory.body, "body"};
   context.draws =
       draws_of_development(experiment_, life.newborn, "operator " + label, static_cast<std::uint64_t>(cycle));
   Rng rng = stream_of(life, context.draws, rng_stream::devo(index, cycle));
   const auto develop = [&] {
-    Edits edits;
+    Edits edits(context.body);
     op->develop(context, edits, rng);
+    if (edits.failure) {
+      life.given_up = true;
+      return life.end(Status::invalid, "given up by \"" + printable(label) + "\" after cycle " + std::to_string(cycle) +
+                                           ": " + printable(*edits.failure));
+    }
     remember(edits, memory_names(*op), life.living.body, memory);
+    if (memory.springs_changed) write_out_scaling(edits, life.living.body, memory.springs);
     // records that no later operator of this cycle asks for need not follow the edits
     life.living.keep(recording(cycle_request(experiment_, cycle, index + 1)));
     make(change_by(edits, static_cast<std::uint32_t>(index), context), life);
@@ -253,15 +264,17 @@ DevoContext DevelopmentLoop::context_of(const Life& life, int cycle, const Sched
                       .first_time = static_cast<double>(schedule.from) * development.cycle_time,
                       .last_time = static_cast<double>(schedule.last(development.cycles)) * development.cycle_time,
                       .identities = living.numbers.identities(),
-                      .daughters = living.numbers.daughters()};
+                      .daughters = living.numbers.daughters(),
+                      .scenario = life.scenario != nullptr ? std::string_view(life.scenario->name) : "",
+                      .life = life.newborn.life};
   show_records(living, request, context);
   return context;
 }
 
 void DevelopmentLoop::make(Change change, Life& life) const {
   if (change.edits.empty()) return;
-  const auto apply_it = [&] { apply(change.edits, life.living); };
-  if (only_grows(change.edits))  // nothing but the elastic energy changes, and finding out how takes less time
+  const auto apply_it = [&] { apply(change.edits, life.living, change.op); };
+  if (only_scales(change.edits))  // nothing but the elastic energy changes, and finding out how takes less time
     allow_energy(life, ElasticEnergy(life.living.body, life.living.state), apply_it);
   else if (adds_energy(change))
     allow_energy(life, energy_of(life), apply_it);
@@ -283,7 +296,8 @@ void DevelopmentLoop::apply_recorded(const std::vector<Change>& changes, Life& l
 }
 
 void DevelopmentLoop::shed_loose_pieces(Life& life, int cycle) const {
-  const Edits edits{.removed_masses = loose_masses(life.living.body)};
+  Edits edits;
+  for (const std::uint32_t mass : loose_masses(life.living.body)) edits.remove_mass(mass);
   if (edits.empty()) return;
   const DevoContext context = context_of(life, cycle, {}, {});
   make(change_by(edits, std::nullopt, context), life);

@@ -48,7 +48,7 @@ class DevelopmentLoop {
   void simulate_cycle(std::span<Life> lives, int cycle, const RecordRequest& request) const;
   /// For the control random-places: lets a copy of each life without a record develop by the operators, and returns the
   /// changes to which the life itself will be yoked.
-  std::vector<std::optional<Yoke>> yokes_of(std::span<const Life> lives) const;
+  std::vector<std::optional<Yoke>> yokes_of(std::span<Life> lives) const;
 
   // ---- ways to change a life after a cycle ----
   void apply_operators(Life& life, int cycle) const;

@@ -15,11 +15,10 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument(what); }
 
-/// Marks `indices` among `count` items. `what` names the items in errors.
-std::vector<std::uint8_t> marked(const std::vector<std::uint32_t>& indices, std::size_t count,
-                                 const std::string& what) {
+/// Marks removed items among `count` items. `what` names the items in errors.
+std::vector<std::uint8_t> marked(const std::vector<Removal>& removals, std::size_t count, const std::string& what) {
   std::vector<std::uint8_t> marks(count, 0);
-  for (const std::uint32_t index : indices) {
+  for (const auto& [index, cause] : removals) {
     if (index >= count)
       refuse("removes " + what + " " + std::to_string(index) + ", but the body has only " + std::to_string(count) +
              ", numbered from 0");
@@ -57,21 +56,10 @@ std::string pair_text(const NewSpring& spring) {
   return "joins masses " + std::to_string(spring.a) + " and " + std::to_string(spring.b);
 }
 
-/// Sorts indices in ascending order and removes duplicates; each index keeps its cause.
-void put_in_order(std::vector<std::uint32_t>& indices, std::vector<double>& causes) {
-  const bool have_causes = !causes.empty();
-  if (have_causes && causes.size() != indices.size()) return;
-  std::vector<std::pair<std::uint32_t, double>> ordered;
-  for (std::size_t i = 0; i < indices.size(); ++i) ordered.emplace_back(indices[i], have_causes ? causes[i] : 0);
-  const auto index_of = [](const auto& item) { return item.first; };
-  std::ranges::stable_sort(ordered, {}, index_of);
-  ordered.erase(std::ranges::unique(ordered, {}, index_of).begin(), ordered.end());
-  indices.clear();
-  if (have_causes) causes.clear();
-  for (const auto& [index, cause] : ordered) {
-    indices.push_back(index);
-    if (have_causes) causes.push_back(cause);
-  }
+/// Sorts removals by index and leaves the first of those of one item.
+void put_in_order(std::vector<Removal>& removals) {
+  std::ranges::stable_sort(removals, {}, &Removal::index);
+  removals.erase(std::ranges::unique(removals, {}, &Removal::index).begin(), removals.end());
 }
 
 /// Returns the rest length (m) at which a new spring exerts no force at first; nullopt if one of its masses does not
@@ -86,22 +74,48 @@ std::optional<double> forceless_length(const NewSpring& spring, const Edits& edi
   return context.resets ? distance : distance / spring.material.relative_length(context.time);
 }
 
+bool is_rest_length(double length) { return length >= 0 && std::isfinite(length); }
+
+void check_scaling(const Scaling& scaling, const ItemMemory& memory) {
+  if (scaling.number >= memory.width)
+    refuse("scales rest lengths by number " + std::to_string(scaling.number) +
+           " that it remembers about springs, but spring_memory() declares only " + std::to_string(memory.width) +
+           ", numbered from 0");
+  // written so that NaN fails
+  const auto on_the_way = [&](double gone) { return gone >= 0 && gone <= scaling.whole; };
+  if (!(scaling.whole > 0) || !std::isfinite(scaling.whole) || !on_the_way(scaling.from) || !on_the_way(scaling.to))
+    refuse("scales rest lengths from " + to_text(scaling.from) + " to " + to_text(scaling.to) + " of a whole of " +
+           to_text(scaling.whole) + "; expected a finite whole above 0, and both numbers from 0 to it");
+}
+
+/// Returns the rest length (m) of a spring after a step of a scaling that check_scaling() accepts. Throws if it is
+/// none.
+double scaled_length(const Scaling& scaling, const Body& body, std::size_t spring, const ItemMemory& memory) {
+  const double whole_change = memory.values[spring * memory.width + scaling.number];
+  const auto relative_length = [&](double gone) { return 1 + whole_change * gone / scaling.whole; };
+  const double length =
+      body.springs[spring].rest_length * (relative_length(scaling.to) / relative_length(scaling.from));
+  if (!is_rest_length(length))
+    refuse("scales spring " + std::to_string(spring) + " to a rest length of " + to_text(length) +
+           "; expected a finite value, at least 0");
+  return length;
+}
+
 /// Applies edits to a body once.
 class Editor {
  public:
-  /// `living` is the life of the body, or nullptr if the body stands alone.
-  Editor(const Edits& edits, Body& body, LivingBody* living)
+  Editor(const Edits& edits, LivingBody& living, std::optional<std::uint32_t> op)
       : edits_(edits),
-        body_(body),
+        body_(living.body),
         living_(living),
-        old_materials_(body.materials.size()),
-        spring_gone_(marked(edits.removed_springs, body.springs.size(), "spring")),
-        mass_gone_(marked(edits.removed_masses, body.masses.size(), "mass")) {}
+        op_(op),
+        old_materials_(living.body.materials.size()),
+        spring_gone_(marked(edits.removed_springs, living.body.springs.size(), "spring")),
+        mass_gone_(marked(edits.removed_masses, living.body.masses.size(), "mass")) {}
 
   void apply() {
-    check_causes();
-    if (edits_.growth) grow_springs(*edits_.growth);
-    if (only_grows(edits_)) return;  // as after every cycle in some lives
+    if (edits_.scaling) scale_lengths(*edits_.scaling);
+    if (only_scales(edits_)) return;  // as after every cycle in some lives
     change_springs();
     check_new_springs();  // before the indices of masses change
     move_masses();
@@ -120,20 +134,6 @@ class Editor {
 
   bool goes(const Spring& spring) const { return mass_gone_[spring.a] || mass_gone_[spring.b]; }
 
-  void check_causes() const {
-    const Causes& causes = edits_.causes;
-    const auto check = [](std::size_t causes_given, std::size_t edits_made, const char* what) {
-      if (causes_given != 0 && causes_given != edits_made)
-        refuse("gives " + std::to_string(causes_given) + " causes for " + std::to_string(edits_made) + " " + what +
-               "; expected one for each, or none");
-    };
-    check(causes.removed_springs.size(), edits_.removed_springs.size(), "removed springs");
-    check(causes.removed_masses.size(), edits_.removed_masses.size(), "removed masses");
-    check(causes.changed_springs.size(), edits_.changed_springs.size(), "changed springs");
-    check(causes.new_masses.size(), edits_.new_masses.size(), "new masses");
-    check(causes.new_springs.size(), edits_.new_springs.size(), "new springs");
-  }
-
   // `what` makes the beginning of a message, which most springs do not need
   static void check_material(const auto& what, const Material& material) {
     if (is_air(material) || !std::isfinite(material.stiffness))
@@ -149,7 +149,6 @@ class Editor {
              "; expected a finite value, at least 0");
   }
 
-  static bool is_rest_length(double length) { return length >= 0 && std::isfinite(length); }
   static void check_rest_length(const auto& what, double length) {
     if (!is_rest_length(length))
       refuse(what() + " by a spring whose rest length is " + to_text(length) + "; expected a finite value, at least 0");
@@ -162,25 +161,13 @@ class Editor {
              to_text(material.stiffness) + " N/m; expected a finite stiffness above 0");
   }
 
-  static void check_growth(const Growth& growth) {
-    // written so that NaN fails
-    const auto on_the_way = [&](double gone) { return gone >= 0 && gone <= growth.whole; };
-    if (!(growth.whole > 0) || !std::isfinite(growth.whole) || !on_the_way(growth.from) || !on_the_way(growth.to))
-      refuse("grows springs from " + to_text(growth.from) + " to " + to_text(growth.to) + " of a whole of " +
-             to_text(growth.whole) + "; expected a finite whole above 0, and both numbers from 0 to it");
-  }
-
-  void grow_springs(const Growth& growth) {
-    check_growth(growth);
-    const auto relative_length = [&](const Spring& spring, double gone) {
-      return 1 + (static_cast<double>(spring.growth) - 1) * gone / growth.whole;
-    };
-    for (Spring& spring : body_.springs) {
-      spring.rest_length *= relative_length(spring, growth.to) / relative_length(spring, growth.from);
-      if (!is_rest_length(spring.rest_length))
-        refuse("grows a spring to a rest length of " + to_text(spring.rest_length) +
-               "; expected a finite value, at least 0");
-    }
+  void scale_lengths(const Scaling& scaling) {
+    static const ItemMemory nothing;
+    const ItemMemory& memory = op_ && *op_ < living_.memory.size() ? living_.memory[*op_].springs : nothing;
+    check_scaling(scaling, memory);
+    for (std::size_t s = 0; s < body_.springs.size(); ++s)
+      if (!spring_gone_[s] && !goes(body_.springs[s]))
+        body_.springs[s].rest_length = scaled_length(scaling, body_, s, memory);
   }
 
   void change_springs() {
@@ -217,7 +204,9 @@ class Editor {
       check_material(what, spring.material);
       check_stiffness(what, spring.material, spring.stiffness_factor);
       check_rest_length(what, spring.rest_length.value());
-      if (!std::isfinite(spring.phase_growth)) refuse(pair_text(spring) + " with a phase_growth that is not finite");
+      if (spring.like && *spring.like >= body_.springs.size())
+        refuse(what() + " by one like spring " + std::to_string(*spring.like) + ", but the body has only " +
+               std::to_string(body_.springs.size()) + ", numbered from 0");
     }
   }
 
@@ -241,44 +230,43 @@ class Editor {
         continue;
       }
       staying.push_back(static_cast<std::uint32_t>(i));
-      add(body_.masses[i], living_ != nullptr ? living_->state.position[i] : Vec3{},
-          living_ != nullptr ? living_->state.velocity[i] : Vec3{});
+      add(body_.masses[i], living_.state.position[i], living_.state.velocity[i]);
     }
-    for (const NewMass& mass : edits_.new_masses) {
-      check_new_mass(mass);
-      add({mass.position, mass.mass, mass.material, 0}, mass.position, {});
+    for (std::size_t i = 0; i < edits_.new_masses.size(); ++i) {
+      const NewMass& mass = edits_.new_masses[i];
+      check_new_mass(mass, "adds mass " + std::to_string(old_masses() + i));
+      add({mass.position, mass.mass.value(), mass.material, 0}, mass.position, {});
     }
     pass_payload_on(masses);
     body_.masses = std::move(masses);
-    if (living_ == nullptr) return;
-    living_->state.position = std::move(positions);
-    living_->state.velocity = std::move(velocities);
-    move_numbers_of_masses(*living_, staying);
+    living_.state.position = std::move(positions);
+    living_.state.velocity = std::move(velocities);
+    move_numbers_of_masses(staying);
   }
 
   /// Lets everything that is known about masses follow the edits.
-  void move_numbers_of_masses(LivingBody& living, const std::vector<std::uint32_t>& staying) const {
+  void move_numbers_of_masses(const std::vector<std::uint32_t>& staying) const {
     const auto move = [&](std::vector<double>& list, std::size_t width) {
       follow(list, width, old_masses(), staying, edits_.new_masses.size());
     };
     const auto move_if_there = [&](std::vector<double>& list) {
       if (list.size() == old_masses()) move(list, 1);
     };
-    for (const auto list : MassRecords::lists) move_if_there(living.*list);
-    move_if_there(living.contact_times);
-    move_if_there(living.cycles_lived);
-    for (OperatorMemory& memory : living.memory) move(memory.masses.values, memory.masses.width);
+    for (const auto list : MassRecords::lists) move_if_there(living_.*list);
+    move_if_there(living_.contact_times);
+    move_if_there(living_.cycles_lived);
+    for (OperatorMemory& memory : living_.memory) move(memory.masses.values, memory.masses.width);
   }
 
-  void check_new_mass(const NewMass& mass) const {
-    if (!std::isfinite(norm(mass.position))) refuse("adds a mass whose position is not finite");
-    if (!(mass.mass > 0) || !std::isfinite(mass.mass))
-      refuse("adds a mass that weighs " + to_text(mass.mass) + " kg; expected a finite value above 0 kg");
+  void check_new_mass(const NewMass& mass, const std::string& what) const {
+    if (!std::isfinite(norm(mass.position))) refuse(what + ", whose position is not finite");
+    if (!(*mass.mass > 0) || !std::isfinite(*mass.mass))
+      refuse(what + ", which weighs " + to_text(*mass.mass) + " kg; expected a finite value above 0 kg");
     if (mass.material < no_material || mass.material >= static_cast<std::int64_t>(old_materials_))
-      refuse("adds a mass of material " + std::to_string(mass.material) + ", but the body has " +
+      refuse(what + " of material " + std::to_string(mass.material) + ", but the body has " +
              std::to_string(old_materials_) + " materials");
     if (mass.mother && *mass.mother >= old_masses())
-      refuse("adds a daughter of mass " + std::to_string(*mass.mother) + ", which does not exist");
+      refuse(what + ", a daughter of mass " + std::to_string(*mass.mother) + ", which does not exist");
   }
 
   /// Spreads the payload of removed masses evenly over the masses that carry payload, or over all if none does.
@@ -317,15 +305,17 @@ class Editor {
       if (new_pairs.contains(spring)) refuse_pair(pair_key(spring.a, spring.b));
     }
     springs.resize(staying.size());
-    if (living_ != nullptr) move_numbers_of_springs(*living_, staying);
+    move_numbers_of_springs(staying);
   }
 
   /// Lets everything that is known about springs follow the edits.
-  void move_numbers_of_springs(LivingBody& living, const std::vector<std::uint32_t>& staying) const {
+  void move_numbers_of_springs(const std::vector<std::uint32_t>& staying) const {
     for (const auto list : SpringRecords::lists)
-      if ((living.*list).size() == spring_gone_.size()) move_record(living.*list, staying);
-    for (OperatorMemory& memory : living.memory)
+      if ((living_.*list).size() == spring_gone_.size()) move_record(living_.*list, staying);
+    for (OperatorMemory& memory : living_.memory) {
+      remember_new(edits_.new_springs, spring_gone_.size(), memory.springs);
       follow(memory.springs.values, memory.springs.width, spring_gone_.size(), staying, edits_.new_springs.size());
+    }
   }
 
   /// Keeps the values of the springs that stay, and adds the mean of these values for each new spring.
@@ -357,12 +347,13 @@ class Editor {
 
   void add_spring(const NewSpring& spring) {
     body_.springs.push_back({new_index_[spring.a], new_index_[spring.b], *spring.rest_length, index_of(spring.material),
-                             1, *spring.rest_length, spring.stiffness_factor, spring.phase_growth});
+                             *spring.rest_length, spring.stiffness_factor});
   }
 
   const Edits& edits_;
   Body& body_;
-  LivingBody* living_;
+  LivingBody& living_;
+  std::optional<std::uint32_t> op_;
   std::size_t old_materials_;              ///< number of materials before the edits
   std::optional<MaterialList> materials_;  ///< of the body, once it is needed, because hashing many takes long
   std::vector<std::uint8_t> spring_gone_, mass_gone_;
@@ -373,24 +364,42 @@ class Editor {
 
 Edits resolved(const Edits& edits, const DevoContext& context) {
   Edits result = edits;
-  put_in_order(result.removed_masses, result.causes.removed_masses);
-  put_in_order(result.removed_springs, result.causes.removed_springs);
+  put_in_order(result.removed_masses);
+  put_in_order(result.removed_springs);
+  for (NewMass& mass : result.new_masses) mass.mass = mass.mass.value_or(context.mass);
   derive_identities(result.new_masses, context);
   for (NewSpring& spring : result.new_springs)
     if (!spring.rest_length) spring.rest_length = forceless_length(spring, edits, context);
   return result;
 }
 
-void apply(const Edits& resolved, LivingBody& living) {
-  if (resolved.empty()) return;
-  const bool is_numbered = living.numbers.numbers().size() == living.body.masses.size();
-  Editor(resolved, living.body, &living).apply();
-  if (is_numbered) living.numbers.apply(resolved);
-  living.version = nullptr;
+void write_out_scaling(Edits& edits, const Body& body, const ItemMemory& memory) {
+  if (!edits.scaling) return;
+  const Scaling scaling = *std::exchange(edits.scaling, std::nullopt);
+  check_scaling(scaling, memory);
+  const std::vector<std::uint8_t> spring_goes = marked(edits.removed_springs, body.springs.size(), "spring"),
+                                  mass_goes = marked(edits.removed_masses, body.masses.size(), "mass");
+  std::vector<std::optional<std::size_t>> change(body.springs.size());  // of each spring, among the edits
+  for (std::size_t i = 0; i < edits.changed_springs.size(); ++i)
+    if (const std::uint32_t spring = edits.changed_springs[i].spring; spring < change.size()) change[spring] = i;
+  for (std::uint32_t s = 0; s < body.springs.size(); ++s) {
+    const Spring& spring = body.springs[s];
+    if (spring_goes[s] || mass_goes[spring.a] || mass_goes[spring.b]) continue;
+    const double length = scaled_length(scaling, body, s, memory);
+    if (length == spring.rest_length) continue;
+    if (!change[s])
+      edits.changed_springs.push_back({.spring = s, .rest_length = length});
+    else if (std::optional<double>& given = edits.changed_springs[*change[s]].rest_length; !given)
+      given = length;
+  }
 }
 
-void apply(const Edits& resolved, Body& body) {
-  if (!resolved.empty()) Editor(resolved, body, nullptr).apply();
+void apply(const Edits& resolved, LivingBody& living, std::optional<std::uint32_t> op) {
+  if (resolved.empty()) return;
+  const bool is_numbered = living.numbers.numbers().size() == living.body.masses.size();
+  Editor(resolved, living, op).apply();
+  if (is_numbered) living.numbers.apply(resolved);
+  living.version = nullptr;
 }
 
 }  // namespace evodevo

@@ -30,26 +30,28 @@ struct LivingBody : SpringRecords, MassRecords {
 };
 
 /// Returns edits in the form in which they are applied and recorded. Removed masses and springs are in ascending order
-/// without duplicates, each with its cause, every new spring between existing masses has a rest length, and every new
-/// mass has an identity. If there are more or fewer causes than removed items, both lists stay as they are, and apply()
-/// throws.
+/// without duplicates, every new spring between existing masses has a rest length, and every new mass has its kilograms
+/// and an identity.
 Edits resolved(const Edits& edits, const DevoContext& context);
 
-/// Whether edits change nothing but lengths, by growth.
-inline bool only_grows(const Edits& edits) {
-  return edits.growth && edits.removed_springs.empty() && edits.removed_masses.empty() &&
+/// Whether edits change nothing but rest lengths, by one rule.
+inline bool only_scales(const Edits& edits) {
+  return edits.scaling && edits.removed_springs.empty() && edits.removed_masses.empty() &&
          edits.changed_springs.empty() && edits.new_masses.empty() && edits.new_springs.empty();
 }
 
-/// Applies resolved edits, all of them together. New springs get the mean records of the springs that stay; new masses
-/// get the next numbers, and their records are 0. What operators remember follows the edits, and is 0 for new masses
-/// and springs unless remember() has given more. Materials that are no longer used are removed, except the
-/// base materials. Throws a std::invalid_argument that names the edit if growth goes beyond its end, an index is out of
+/// Replaces Edits::scaling by changes of single springs, which a record can repeat without what the operator remembers
+/// now, `memory`.
+void write_out_scaling(Edits& edits, const Body& body, const ItemMemory& memory);
+
+/// Applies resolved edits of the devo operator with index `op`, all of them together. New springs get the mean records
+/// of the springs that stay; new masses get the next numbers, and their records are 0. What operators remember follows
+/// the edits, and is 0 for new masses and springs unless remember() has given more or a new spring is like another one.
+/// Materials that are no longer used are removed, except the base materials. Throws a std::invalid_argument that names
+/// the edit if a scaling goes beyond its end or by a number that the operator does not remember, an index is out of
 /// range, a spring joins a mass to itself or to a removed mass, a pair of masses is joined twice, a spring is changed
-/// twice or is both changed and removed, a spring is of air, a mass descends from one that does not exist, a number is
-/// not finite, or there are more or fewer causes than edits.
-void apply(const Edits& resolved, LivingBody& living);
-/// Does the same for a body alone, without its state, its records and what operators remember.
-void apply(const Edits& resolved, Body& body);
+/// twice or is both changed and removed, a spring is of air, a mass descends from one that does not exist, or a number
+/// is not finite.
+void apply(const Edits& resolved, LivingBody& living, std::optional<std::uint32_t> op = std::nullopt);
 
 }  // namespace evodevo

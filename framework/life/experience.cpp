@@ -1,5 +1,6 @@
 #include "life/experience.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -9,47 +10,83 @@
 namespace evodevo {
 namespace {
 
-/// Replaces what an operator remembers about the items of a body by `values`, which are also those of new items. `item`
-/// is "mass" or "spring".
-void replace(const std::vector<double>& values, const std::vector<std::string>& names, const std::string& item,
-             std::size_t items, std::size_t added, ItemMemory& memory) {
-  if (values.empty()) return;
-  const std::string list = "Edits::" + item + "_memory";
-  const std::size_t width = memory.width;
-  if (values.size() != (items + added) * width)
-    throw std::invalid_argument("gives " + std::to_string(values.size()) + " numbers in " + list + " for " +
-                                std::to_string(items) + " " + item + (item == "mass" ? "es" : "s") + " and " +
-                                std::to_string(added) + " new ones; expected " +
-                                std::to_string((items + added) * width) + ", because " + item + "_memory() declares " +
-                                std::to_string(width) + " for each");
+/// Throws unless an operator that declares `names` gives a finite number for each of them. `item` is "mass", "spring"
+/// or "body", and `whose` is such as "mass 3".
+void check_values(std::span<const double> values, const std::vector<std::string>& names, const std::string& item,
+                  const std::string& whose) {
+  if (values.size() != names.size())
+    throw std::invalid_argument("remembers " + std::to_string(values.size()) + " numbers about " + whose +
+                                "; expected " + std::to_string(names.size()) + ", because " + item +
+                                "_memory() declares as many names");
   for (std::size_t i = 0; i < values.size(); ++i)
     if (!std::isfinite(values[i]))
-      throw std::invalid_argument("gives \"" + printable(names.at(i % width)) + "\" of " + item + " " +
-                                  std::to_string(i / width) + " in " + list + " the value " + to_text(values[i]) +
-                                  "; expected a finite number");
-  memory.values = values;
+      throw std::invalid_argument("remembers \"" + printable(names[i]) + "\" of " + whose + " as " +
+                                  to_text(values[i]) + "; expected a finite number");
 }
 
-}  // namespace
+/// Replaces what an operator remembers about the `items` items that `edits` name, of which the last may be new.
+void replace(const MemoryEdits& edits, const std::vector<std::string>& names, const std::string& item,
+             std::size_t items, ItemMemory& memory) {
+  auto from = edits.values.begin();
+  for (std::size_t i = 0; i < edits.items.size(); ++i) {
+    const std::string whose = item + ' ' + std::to_string(edits.items[i]);
+    if (edits.items[i] >= items)
+      throw std::invalid_argument("remembers something about " + whose + ", but there are only " +
+                                  std::to_string(items) + ", numbered from 0");
+    const auto count = static_cast<std::ptrdiff_t>(edits.counts[i]);
+    check_values(std::span(from, from + count), names, item, whose);
+    std::copy_n(from, count,
+                memory.values.begin() + static_cast<std::ptrdiff_t>(std::size_t{edits.items[i]} * memory.width));
+    from += count;
+  }
+}
 
-OperatorMemory memory_at_birth(const MemoryNames& names, const MemoryByName& given, const Body& body) {
-  const auto blank = [](std::size_t width, std::size_t items) {
-    return ItemMemory{width, std::vector<double>(width * items, 0.0)};
-  };
-  const std::size_t width = names.masses.size();
-  OperatorMemory memory{blank(width, body.masses.size()), blank(names.springs.size(), body.springs.size())};
+/// Returns what is remembered at birth about `items` items under `names`.
+ItemMemory at_birth(const std::vector<std::string>& names, const MemoryByName& given, std::size_t items) {
+  const std::size_t width = names.size();
+  ItemMemory memory{width, std::vector<double>(width * items, 0.0)};
   for (std::size_t name = 0; name < width; ++name) {
-    const auto found = given.find(names.masses[name]);
+    const auto found = given.find(names[name]);
     if (found == given.end()) continue;
-    for (std::size_t mass = 0; mass < body.masses.size(); ++mass)
-      memory.masses.values[mass * width + name] = found->second.at(mass);
+    for (std::size_t item = 0; item < items; ++item) memory.values[item * width + name] = found->second.at(item);
   }
   return memory;
 }
 
+}  // namespace
+
+OperatorMemory memory_at_birth(const MemoryNames& names, const BuiltBody& built) {
+  return {.masses = at_birth(names.masses, built.mass_memory, built.body.masses.size()),
+          .springs = at_birth(names.springs, built.spring_memory, built.body.springs.size()),
+          .body = std::vector<double>(names.body.size(), 0.0)};
+}
+
+void remember_new(const std::vector<NewSpring>& new_springs, std::size_t springs, ItemMemory& memory) {
+  const std::size_t width = memory.width;
+  if (width == 0 || new_springs.empty() || memory.values.size() > springs * width) return;
+  memory.values.reserve(memory.values.size() + new_springs.size() * width);
+  for (const NewSpring& spring : new_springs)
+    for (std::size_t number = 0; number < width; ++number)
+      memory.values.push_back(spring.like && *spring.like < springs ? memory.values[*spring.like * width + number]
+                                                                    : 0.0);
+}
+
 void remember(const Edits& edits, const MemoryNames& names, const Body& body, OperatorMemory& memory) {
-  replace(edits.mass_memory, names.masses, "mass", body.masses.size(), edits.new_masses.size(), memory.masses);
-  replace(edits.spring_memory, names.springs, "spring", body.springs.size(), edits.new_springs.size(), memory.springs);
+  if (!edits.mass_memory.items.empty()) {
+    const std::size_t masses = body.masses.size() + edits.new_masses.size();
+    memory.masses.values.resize(masses * memory.masses.width, 0.0);
+    replace(edits.mass_memory, names.masses, "mass", masses, memory.masses);
+  }
+  if (!edits.spring_memory.items.empty()) {
+    remember_new(edits.new_springs, body.springs.size(), memory.springs);
+    replace(edits.spring_memory, names.springs, "spring", body.springs.size() + edits.new_springs.size(),
+            memory.springs);
+    memory.springs_changed = true;
+  }
+  if (edits.body_memory) {
+    check_values(*edits.body_memory, names.body, "body", "the body");
+    memory.body = *edits.body_memory;
+  }
 }
 
 void follow(std::vector<double>& values, std::size_t width, std::size_t items,

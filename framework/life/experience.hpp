@@ -8,6 +8,7 @@
 
 #include "evodevo/devo.hpp"
 #include "experiment/experiment.hpp"
+#include "life/body_building.hpp"
 
 namespace evodevo {
 
@@ -35,19 +36,22 @@ struct ItemMemory {
 /// What one devo operator remembers.
 struct OperatorMemory {
   ItemMemory masses, springs;
+  std::vector<double> body;
+  bool springs_changed = false;  ///< whether the operator itself has changed what it remembers about springs
 };
 
-/// What encodings give masses to remember: a number for each mass by name.
-using MemoryByName = std::map<std::string, std::vector<double>>;
-
-/// Returns what an operator that declares `names` remembers about a body at birth: `given` where the names are equal,
-/// otherwise 0. Each list in `given` has a number for each mass of the body.
-OperatorMemory memory_at_birth(const MemoryNames& names, const MemoryByName& given, const Body& body);
+/// Returns what an operator that declares `names` remembers about a body at birth: what the encoding gave where the
+/// names are equal, otherwise 0.
+OperatorMemory memory_at_birth(const MemoryNames& names, const BuiltBody& built);
 
 /// Replaces what an operator remembers by what its edits give. The values of new masses and springs come last; apply()
 /// must follow. Throws a std::invalid_argument that names the place if the edits give the wrong number of values, or
-/// one that is not finite. `names` are those that the operator declares.
+/// one that is not finite, or give them to an item that does not exist. `names` are those that the operator declares.
 void remember(const Edits& edits, const MemoryNames& names, const Body& body, OperatorMemory& memory);
+
+/// Appends what is remembered about new springs: what is remembered about the spring that they are like, or 0. Does
+/// nothing if it is there already. `springs` is the number of springs before.
+void remember_new(const std::vector<NewSpring>& new_springs, std::size_t springs, ItemMemory& memory);
 
 /// Lets a list with `width` values for each of `items` items follow an edit: keeps the values of the items that stay,
 /// given by their indices, and then those of `added` new items. If the list has no values of the new items yet, they

@@ -79,12 +79,14 @@ struct Result {
 struct Life {
   Newborn newborn;
   LivingBody living;
-  const Scene* scene = nullptr;       ///< the scene in which the body lives; set at birth
-  std::vector<StoredSample> samples;  ///< taken so far
-  double contact_time = 0;            ///< mean time in which a mass touched the ground, as far as it was counted, s
-  double work = 0;                    ///< work of the muscles on the body, as far as it was recorded, J
-  LifeRecord record;                  ///< changes by development so far
-  Result result;                      ///< without records and lives
+  const Scene* scene = nullptr;        ///< the scene in which the body lives; set at birth
+  const Scenario* scenario = nullptr;  ///< the scenario in which it develops; null: in the experiment's own scene
+  std::vector<StoredSample> samples;   ///< taken so far
+  double contact_time = 0;             ///< mean time in which a mass touched the ground, as far as it was counted, s
+  double work = 0;                     ///< work of the muscles on the body, as far as it was recorded, J
+  LifeRecord record;                   ///< changes by development so far
+  bool given_up = false;               ///< whether an operator has given the body up
+  Result result;                       ///< without records and lives
 
   bool alive() const { return result.status == Status::ok; }
   /// Ends the life without objectives. `ended_at` is the simulated time at which the body diverged, s.

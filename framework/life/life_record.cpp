@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <map>
@@ -16,9 +17,28 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are written as they lie in memory");
 
-/// Bits that say whether springs grow and whether Change::lengths_given is true. They come after the bits for the lists
-/// of causes.
-constexpr std::uint32_t growth_bit = 1u << Causes::lists.size(), lengths_given_bit = growth_bit << 1;
+/// Bits that say whether rest lengths are scaled and whether Change::lengths_given is true. They come after the bits
+/// for the kinds of edits that have causes.
+constexpr std::uint32_t scaling_bit = 1u << edit_kinds.size(), lengths_given_bit = scaling_bit << 1;
+
+/// Calls `each` with the cause of every edit of a kind, in the order of the edits.
+void for_each_cause(auto& edits, EditKind kind, const auto& each) {
+  const auto in = [&](auto& list) {
+    for (auto& edit : list) each(edit.cause);
+  };
+  switch (kind) {
+    case EditKind::removed_spring:
+      return in(edits.removed_springs);
+    case EditKind::removed_mass:
+      return in(edits.removed_masses);
+    case EditKind::changed_spring:
+      return in(edits.changed_springs);
+    case EditKind::new_mass:
+      return in(edits.new_masses);
+    case EditKind::new_spring:
+      return in(edits.new_springs);
+  }
+}
 
 /// Appends changes to a string of bytes. A whole number is written with seven bits in each byte, the lowest bits first;
 /// the eighth bit says whether more bytes follow.
@@ -36,7 +56,7 @@ class Writer {
     for (const ChangedSpring& spring : edits.changed_springs) changed(spring);
     whole(edits.new_masses.size());
     for (const NewMass& mass : edits.new_masses) {
-      raw(mass.position), raw(mass.mass);
+      raw(mass.position), raw(mass.mass.value());
       whole(static_cast<std::uint64_t>(mass.material - no_material));
       whole(mass.mother ? std::uint64_t{*mass.mother} + 1 : 0);
       raw(mass.identity.value());
@@ -46,24 +66,28 @@ class Writer {
       whole(spring.a), whole(spring.b);
       material(spring.material);
       raw(spring.rest_length.value());
-      whole(spring.stiffness_factor == 1 ? 0 : 1);
+      whole((spring.stiffness_factor != 1 ? 1u : 0u) | (spring.like ? 2u : 0u));
       if (spring.stiffness_factor != 1) raw(spring.stiffness_factor);
+      if (spring.like) whole(*spring.like);
     }
-    causes_and_growth(change);
+    causes_and_scaling(change);
   }
 
  private:
-  /// First writes bits: one for each list of causes, which says whether the list is not empty, and the two other bits.
-  /// Then writes the lists and the growth.
-  void causes_and_growth(const Change& change) {
+  /// First writes bits: one for each kind of edit, which says whether any has a cause, and the two other bits. Then
+  /// writes the causes and the scaling.
+  void causes_and_scaling(const Change& change) {
     const Edits& edits = change.edits;
-    std::uint32_t given = (edits.growth ? growth_bit : 0) | (change.lengths_given ? lengths_given_bit : 0);
-    for (std::size_t i = 0; i < Causes::lists.size(); ++i)
-      if (!(edits.causes.*Causes::lists[i]).empty()) given |= 1u << i;
+    std::uint32_t given = (edits.scaling ? scaling_bit : 0) | (change.lengths_given ? lengths_given_bit : 0);
+    for (std::size_t i = 0; i < edit_kinds.size(); ++i)
+      for_each_cause(edits, edit_kinds[i], [&](double cause) { given |= std::isnan(cause) ? 0 : 1u << i; });
     whole(given);
-    for (const auto list : Causes::lists)
-      for (const double cause : edits.causes.*list) raw(static_cast<float>(cause));
-    if (edits.growth) raw(*edits.growth);
+    for (std::size_t i = 0; i < edit_kinds.size(); ++i)
+      if ((given >> i & 1) != 0)
+        for_each_cause(edits, edit_kinds[i], [&](double cause) { raw(static_cast<float>(cause)); });
+    if (!edits.scaling) return;
+    whole(edits.scaling->number);
+    raw(edits.scaling->from), raw(edits.scaling->to), raw(edits.scaling->whole);
   }
 
   void whole(std::uint64_t value) {
@@ -76,10 +100,10 @@ class Writer {
     bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
   }
 
-  void ascending_indices(const std::vector<std::uint32_t>& indices) {
-    whole(indices.size());
+  void ascending_indices(const std::vector<Removal>& removals) {
+    whole(removals.size());
     std::uint32_t before = 0;
-    for (const std::uint32_t index : indices) whole(index - before), before = index;
+    for (const Removal& removal : removals) whole(removal.index - before), before = removal.index;
   }
 
   void changed(const ChangedSpring& spring) {
@@ -134,9 +158,11 @@ class Reader {
       spring.a = index(), spring.b = index();
       spring.material = material();
       spring.rest_length = raw<double>();
-      if (index() != 0) spring.stiffness_factor = raw<double>();
+      const std::uint32_t parts = index();
+      if ((parts & 1) != 0) spring.stiffness_factor = raw<double>();
+      if ((parts & 2) != 0) spring.like = index();
     }
-    read_causes_and_growth(change);
+    read_causes_and_scaling(change);
     return change;
   }
 
@@ -162,26 +188,26 @@ class Reader {
     return value;
   }
 
-  std::vector<std::uint32_t> ascending_indices() {
-    std::vector<std::uint32_t> indices;
+  std::vector<Removal> ascending_indices() {
+    std::vector<Removal> removals;
     for (std::uint32_t left = index(); left > 0; --left) {
-      const std::uint64_t more = index(), before = indices.empty() ? 0 : indices.back();
-      if (before + more > std::numeric_limits<std::uint32_t>::max() || (!indices.empty() && more == 0)) fail();
-      indices.push_back(static_cast<std::uint32_t>(before + more));
+      const std::uint64_t more = index(), before = removals.empty() ? 0 : removals.back().index;
+      if (before + more > std::numeric_limits<std::uint32_t>::max() || (!removals.empty() && more == 0)) fail();
+      removals.push_back({static_cast<std::uint32_t>(before + more)});
     }
-    return indices;
+    return removals;
   }
 
-  void read_causes_and_growth(Change& change) {
+  void read_causes_and_scaling(Change& change) {
     Edits& edits = change.edits;
-    const std::array counts{edits.removed_springs.size(), edits.removed_masses.size(), edits.changed_springs.size(),
-                            edits.new_masses.size(), edits.new_springs.size()};
     const std::uint32_t given = index();
     change.lengths_given = (given & lengths_given_bit) != 0;
-    for (std::size_t i = 0; i < Causes::lists.size(); ++i)
-      for (std::size_t left = (given >> i & 1) != 0 ? counts[i] : 0; left > 0; --left)
-        (edits.causes.*Causes::lists[i]).push_back(static_cast<double>(raw<float>()));
-    if ((given & growth_bit) != 0) edits.growth = raw<Growth>();
+    for (std::size_t i = 0; i < edit_kinds.size(); ++i)
+      if ((given >> i & 1) != 0)
+        for_each_cause(edits, edit_kinds[i], [&](double& cause) { cause = static_cast<double>(raw<float>()); });
+    if ((given & scaling_bit) == 0) return;
+    Scaling& scaling = edits.scaling.emplace(Scaling{.number = index()});
+    scaling.from = raw<double>(), scaling.to = raw<double>(), scaling.whole = raw<double>();
   }
 
   ChangedSpring changed() {
@@ -213,6 +239,13 @@ Change change_by(const Edits& edits, std::optional<std::uint32_t> op, const Devo
           .op = op,
           .edits = resolved(edits, context),
           .lengths_given = std::any_of(edits.new_springs.begin(), edits.new_springs.end(), has_length)};
+}
+
+bool has_causes(const Edits& edits) {
+  bool found = false;
+  for (const EditKind kind : edit_kinds)
+    for_each_cause(edits, kind, [&](double cause) { found = found || !std::isnan(cause); });
+  return found;
 }
 
 LifeRecord::LifeRecord(std::string bytes) : bytes_(std::move(bytes)) {
@@ -256,11 +289,11 @@ std::uint32_t MassNumbers::add(const NewMass& mass) {
   return numbers_.emplace_back(next_++);
 }
 
-void MassNumbers::remove(const std::vector<std::uint32_t>& masses) {
+void MassNumbers::remove(const std::vector<Removal>& masses) {
   for (auto mass = masses.rbegin(); mass != masses.rend(); ++mass) {
-    numbers_.erase(numbers_.begin() + *mass);
-    daughters_.erase(daughters_.begin() + *mass);
-    identities_.erase(identities_.begin() + *mass);
+    numbers_.erase(numbers_.begin() + mass->index);
+    daughters_.erase(daughters_.begin() + mass->index);
+    identities_.erase(identities_.begin() + mass->index);
   }
 }
 

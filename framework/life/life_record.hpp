@@ -21,8 +21,8 @@ struct Change {
 /// Returns the change that consists of the `edits` of operator `op`, which are still to be applied.
 Change change_by(const Edits& edits, std::optional<std::uint32_t> op, const DevoContext& context);
 
-/// All changes of a life, in their order. Replacing one spring takes about 20 bytes, and letting all springs grow once
-/// takes about 30 bytes. Causes are stored in single precision.
+/// All changes of a life, in their order. Replacing one spring takes about 20 bytes, and scaling all springs by one
+/// rule takes about 30 bytes. Causes are stored in single precision.
 class LifeRecord {
  public:
   LifeRecord() = default;
@@ -42,6 +42,9 @@ class LifeRecord {
   MaterialNumbers materials_;  ///< materials written so far; later changes refer to them by number
 };
 
+/// Whether any edit has a cause.
+bool has_causes(const Edits& edits);
+
 /// What names the masses of a body throughout a life, while indices change.
 ///
 /// - The number of a mass at birth is its index; masses that are added later get the next numbers.
@@ -57,7 +60,7 @@ class MassNumbers {
   /// Does one after the other: adds a mass after the others and returns its number; removes masses, given by their
   /// indices in ascending order.
   std::uint32_t add(const NewMass& mass);
-  void remove(const std::vector<std::uint32_t>& masses);
+  void remove(const std::vector<Removal>& masses);
 
   /// The numbers of all masses, in the order of their indices. This order is ascending.
   const std::vector<std::uint32_t>& numbers() const { return numbers_; }

@@ -14,7 +14,12 @@ Json value_json(const Genome& genome, const Layout& layout, const Block& block, 
   const GeneSpec& spec = layout.types[block.type].gene(gene);
   const float value = genome[block.first + gene];
   if (spec.is_reference()) return id_text(layout.blocks(genome)[target_of(genome, layout, block, gene)].id);
-  if (spec.is_choice()) return static_cast<std::int64_t>(value);
+  if (spec.is_choice()) {
+    const auto option = static_cast<std::int64_t>(value);
+    const std::span<const std::string> names = layout.types[block.type].options(gene);
+    if (!names.empty()) return printable(names[static_cast<std::size_t>(option)]);
+    return option;
+  }
   return value;
 }
 

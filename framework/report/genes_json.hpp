@@ -16,7 +16,8 @@ std::string id_text(BlockId id);
 std::string gene_name(const BlockType& type, const Block& block, std::uint32_t gene);
 
 /// Returns the sections of a genome with their owners and blocks, and the genes of each block by name. Ids are texts of
-/// 16 hexadecimal digits. References are the ids of the blocks to which they refer.
+/// 16 hexadecimal digits. References are the ids of the blocks to which they refer, choices the names of the options,
+/// or their numbers if the options have no names. The layout must allow the genome.
 nlohmann::ordered_json genes_json(const Genome& genome, const Layout& layout);
 
 }  // namespace evodevo

@@ -11,46 +11,42 @@ namespace evodevo {
 namespace {
 
 /// Returns the cause of an edit, or nullopt if the operator gave none.
-std::optional<Cause> cause_at(const Causes& causes, Causes::List list, std::size_t index) {
-  const std::vector<double>& numbers = causes.*list;
-  return numbers.empty() || std::isnan(numbers[index]) ? std::nullopt : std::optional(Cause{list, numbers[index]});
+std::optional<Cause> cause_of(EditKind kind, double cause) {
+  return std::isnan(cause) ? std::nullopt : std::optional(Cause{kind, cause});
 }
 
 /// Collects the events of a life. Its changes must be added in the order in which they were made.
 class EventLog {
  public:
-  explicit EventLog(const LivingBody& born) : body_(born.body), masses_(born.numbers) {}
+  explicit EventLog(const LivingBody& born) : living_(born), body_(living_.body), masses_(born.numbers) {}
 
   void add(const Change& change) {
     const Edits& edits = change.edits;
-    if (edits.growth) add_event(change, "growth", {}).growth = edits.growth;
+    if (edits.scaling) add_event(change, "scaled", {}).scaling = edits.scaling;
     add_removals(change);
-    for (std::size_t i = 0; i < edits.changed_springs.size(); ++i) {
-      const ChangedSpring& spring = edits.changed_springs[i];
+    for (const ChangedSpring& spring : edits.changed_springs) {
       Event& event = add_event(change, "changed", ends(spring.spring));
-      event.cause = cause_at(edits.causes, &Causes::changed_springs, i);
+      event.cause = cause_of(EditKind::changed_spring, spring.cause);
       event.rest_length = spring.rest_length;
       event.material = spring.material;
       event.stiffness = stiffness_of(spring);
     }
-    for (std::size_t i = 0; i < edits.new_masses.size(); ++i) {
-      const NewMass& mass = edits.new_masses[i];
+    for (const NewMass& mass : edits.new_masses) {
       Event& event = add_event(change, "come", {masses_.add(mass)});
-      event.cause = cause_at(edits.causes, &Causes::new_masses, i);
+      event.cause = cause_of(EditKind::new_mass, mass.cause);
       event.position = mass.position;
       event.identity = mass.identity;
       if (mass.mother) event.mother = number(*mass.mother);
     }
-    for (std::size_t i = 0; i < edits.new_springs.size(); ++i) {
-      const NewSpring& spring = edits.new_springs[i];
+    for (const NewSpring& spring : edits.new_springs) {
       Event& event = add_event(change, "come", {number(spring.a), number(spring.b)});
-      event.cause = cause_at(edits.causes, &Causes::new_springs, i);
+      event.cause = cause_of(EditKind::new_spring, spring.cause);
       event.rest_length = spring.rest_length;
       event.material = spring.material;
       if (spring.stiffness_factor != 1) event.stiffness = spring.stiffness_factor * spring.material.stiffness;
     }
     masses_.remove(edits.removed_masses);
-    apply(change.edits, body_);
+    apply(change.edits, living_, change.op);
   }
 
   const Body& body() const { return body_; }
@@ -66,16 +62,15 @@ class EventLog {
     const Edits& edits = change.edits;
     std::map<std::uint32_t, std::optional<Cause>> gone;
     const auto goes = [&](std::uint32_t mass) {
-      return std::binary_search(edits.removed_masses.begin(), edits.removed_masses.end(), mass);
+      return std::ranges::binary_search(edits.removed_masses, mass, {}, &Removal::index);
     };
     for (std::uint32_t s = 0; s < body_.springs.size(); ++s)
       if (goes(body_.springs[s].a) || goes(body_.springs[s].b)) gone[s] = std::nullopt;
-    for (std::size_t i = 0; i < edits.removed_springs.size(); ++i)
-      gone[edits.removed_springs[i]] = cause_at(edits.causes, &Causes::removed_springs, i);
-    for (std::size_t i = 0; i < edits.removed_masses.size(); ++i) {
-      Event& event = add_event(change, "gone", {number(edits.removed_masses[i])});
-      event.cause = cause_at(edits.causes, &Causes::removed_masses, i);
-      event.identity = masses_.identities().at(edits.removed_masses[i]);
+    for (const auto& [spring, cause] : edits.removed_springs) gone[spring] = cause_of(EditKind::removed_spring, cause);
+    for (const auto& [mass, cause] : edits.removed_masses) {
+      Event& event = add_event(change, "gone", {number(mass)});
+      event.cause = cause_of(EditKind::removed_mass, cause);
+      event.identity = masses_.identities().at(mass);
     }
     for (const auto& [spring, cause] : gone) add_event(change, "gone", ends(spring)).cause = cause;
   }
@@ -95,18 +90,23 @@ class EventLog {
 
   std::uint32_t number(std::uint32_t mass) const { return masses_.numbers().at(mass); }
 
-  Body body_;
+  LivingBody living_;
+  const Body& body_;    ///< of `living_`
   MassNumbers masses_;  ///< numbers of the masses of `body_`
   std::vector<Event> events_;
 };
 
 }  // namespace
 
-Measure Narrated::measure(Causes::List list) const {
+Measure Narrated::measure(EditKind kind) const {
   const Measure measure = call_operator(experiment->call_of(Devo::kind, index),
-                                        [&] { return experiment->devo.at(index).op->measure(list); });
+                                        [&] { return experiment->devo.at(index).op->measure(kind); });
   if (is_tallied && measure.unit == "N") return {"skip-shift", "points"};
   return {printable(measure.name), printable(measure.unit)};
+}
+
+std::string Narrated::remembered(std::uint32_t number) const {
+  return printable(memory_names(*experiment, index).springs.at(number));
 }
 
 std::vector<Narrated> narrated_operators(const Experiment& experiment) {

@@ -17,8 +17,10 @@ struct Narrated {
   bool is_tallied = false;  ///< whether the operator sees stress as Skip-Shift points instead of in N
   bool is_unique = true;    ///< whether no other devo operator of the experiment has this name
 
-  /// Returns the name and unit of the causes in a list.
-  Measure measure(Causes::List list) const;
+  /// Returns the name and unit of the causes of a kind of edit.
+  Measure measure(EditKind kind) const;
+  /// Returns the name of a number that the operator remembers about springs.
+  std::string remembered(std::uint32_t number) const;
 };
 
 /// Returns the devo operators of an experiment. They refer to the experiment, which must outlive them.
@@ -26,17 +28,17 @@ std::vector<Narrated> narrated_operators(const Experiment& experiment);
 
 /// The number that caused an edit.
 struct Cause {
-  Causes::List list;  ///< the list that has the number; it determines the name and unit of the number
+  EditKind kind;  ///< of the edit; it determines the name and unit of the number
   double number;
 };
 
-/// One edit of a mass or spring, or the growth of all springs.
+/// One edit of a mass or spring, or the scaling of all rest lengths.
 struct Event {
   std::uint32_t cycle = 0;            ///< cycle after which the edit was made
   std::optional<std::uint32_t> op;    ///< index among the devo operators; none: removed with a loose piece of the body
-  const char* what = "";              ///< "gone", "come", "changed" or "growth"
-  std::vector<std::uint32_t> masses;  ///< number of the mass, or of the two masses of the spring; empty for growth
-  std::optional<Growth> growth;
+  const char* what = "";              ///< "gone", "come", "changed" or "scaled"
+  std::vector<std::uint32_t> masses;  ///< number of the mass, or of the two masses of the spring; empty if scaled
+  std::optional<Scaling> scaling;
   std::optional<Cause> cause;             ///< cause, if the operator requested this edit itself and gave a cause
   std::optional<Vec3> position;           ///< position of a new mass, m
   std::optional<std::uint64_t> identity;  ///< of a mass (DevoContext::identity())

@@ -153,7 +153,7 @@ Film mapping_film(const Blueprint& blueprint, BuiltBody built) {
 
 Json random_robot(const Experiment& experiment, const Individual& individual, std::size_t budget) {
   const Blueprint blueprint = decoded(experiment, individual.genome, {.individual = individual.id});
-  BuiltBody built = build_body(blueprint);
+  BuiltBody built = build_body(experiment, blueprint, {.individual = individual.id});
   Json robot = {{"individual", individual.id}, {"role", "random"}, {"reason", built.failure}};
   robot["status"] = name(built.failure.empty() ? Status::ok : Status::invalid);
   Film film;
@@ -237,7 +237,7 @@ Json newborn_json(const Archive& archive, const Experiment& experiment, const In
   check_genes(archive, experiment, individual);
   Blueprint blueprint = decoded(experiment, individual.genome, {.individual = individual.id});
   blueprint.origins.clear();
-  BuiltBody built = build_body(blueprint);
+  BuiltBody built = build_body(experiment, blueprint, {.individual = individual.id});
   return film_json(built.failure.empty() ? mapping_film(blueprint, std::move(built)) : Film{}, {{"birth"}}, 0);
 }
 

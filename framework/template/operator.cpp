@@ -19,6 +19,7 @@ class @CLASS@ final : public evodevo::Encoding {
     evodevo::Layout layout;
     for (std::int64_t i = 0; i < masses_; ++i) layout.add_block({place, place, place, material}, "mass");
     layout.types.front().gene_names = {"x", "y", "z", "material"};
+    layout.types.front().name_options(3, context.material_names);
     return layout;
   }
 
@@ -46,9 +47,9 @@ class @CLASS@ final : public evodevo::Mutation {
     p.real(rate_, "rate", {0, 1, "1"}, "Probability that a gene gets a new random value.");
   }
 
-  void mutate(evodevo::Genome& genome, const evodevo::Layout& layout, evodevo::Rng& rng) const override {
+  void mutate(evodevo::Genome& genome, const evodevo::VariationContext& context, evodevo::Rng& rng) const override {
     for (std::size_t i = 0; i < genome.size(); ++i)
-      if (rng.chance(rate_)) genome[i] = layout.draw(genome, i, rng);
+      if (rng.chance(rate_)) genome[i] = context.layout.draw(genome, i, rng);
   }
 
  private:
@@ -62,12 +63,12 @@ class @CLASS@ final : public evodevo::Crossover {
     p.real(rate_, "rate", {0, 1, "1"}, "Probability that a block comes from the second parent.");
   }
 
-  evodevo::Genome cross(const evodevo::Parents& parents, const evodevo::Layout& layout,
+  evodevo::Genome cross(const evodevo::Parents& parents, const evodevo::VariationContext& context,
                         evodevo::Rng& rng) const override {
     evodevo::Genome child = parents.first;
-    const auto partners = homologous(child, parents.second, layout);
+    const auto partners = homologous(child, parents.second, context.layout);
     for (std::uint32_t block = 0; block < partners.size(); ++block)
-      if (partners[block] && rng.chance(rate_)) copy_genes(child, block, parents.second, *partners[block], layout);
+      if (partners[block] && rng.chance(rate_)) copy_genes(child, block, parents.second, *partners[block], context.layout);
     return child;
   }
 
@@ -85,7 +86,7 @@ class @CLASS@ final : public evodevo::Devo {
 
   void develop(const evodevo::DevoContext& context, evodevo::Edits& edits, evodevo::Rng& rng) const override {
     const auto count = static_cast<std::uint32_t>(context.body.springs.size());
-    for (std::int64_t i = 0; i < springs_ && count > 0; ++i) edits.removed_springs.push_back(rng.below(count));
+    for (std::int64_t i = 0; i < springs_ && count > 0; ++i) edits.remove_spring(rng.below(count));
   }
 
  private:
@@ -115,7 +116,7 @@ class @CLASS@ final : public evodevo::Fitness {
   double window_ = 2;
 };
 @selection@
-using evodevo::Candidate;
+using evodevo::SelectionContext;
 
 /// Truncation selection: only the best part of the population breeds. Failed rows have no scores and come last.
 class @CLASS@ final : public evodevo::Selection {
@@ -124,18 +125,15 @@ class @CLASS@ final : public evodevo::Selection {
     p.real(breeders_, "breeders", {0, 1, "1"}, "Fraction of the population that breeds, the best first.");
   }
 
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const Candidate> rows, std::uint32_t count,
-                                                               evodevo::Rng& rng) const override {
-    return draw_pairs(rows, count, rng, [&](std::uint32_t size, evodevo::Rng& random) {
+  std::vector<evodevo::Couple> parents(const SelectionContext& context, std::uint32_t count,
+                                       evodevo::Rng& rng) const override {
+    return draw_pairs(context.rows, count, rng, [&](std::uint32_t size, evodevo::Rng& random) {
       return random.below(std::max(1u, static_cast<std::uint32_t>(breeders_ * size)));
     });
   }
 
-  std::vector<std::uint32_t> survivors(std::span<const Candidate> rows, std::uint32_t population,
-                                       evodevo::Rng&) const override {
-    auto order = best_first(rows);
-    order.resize(std::min<std::size_t>(order.size(), population));
-    return order;
+  evodevo::Survival survivors(const SelectionContext& context, std::uint32_t population, evodevo::Rng&) const override {
+    return evodevo::first_rows(best_first(context.rows), population);
   }
 
  private:

@@ -15,10 +15,7 @@ struct Points {
   std::span<const Vec3> positions;
 
   std::size_t kdtree_get_point_count() const { return positions.size(); }
-  double kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    const Vec3& p = positions[i];
-    return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
-  }
+  double kdtree_get_pt(std::size_t i, std::size_t axis) const { return positions[i][axis]; }
   template <class Bounds>
   bool kdtree_get_bbox(Bounds&) const {
     return false;  // nanoflann computes the bounding box itself

@@ -25,7 +25,7 @@ class AmplitudeAdaptation final : public evodevo::Adaptation {
                                                 double value) const override {
     evodevo::Material material = body.materials[body.springs[spring].material];
     material.amplitude = value;
-    return evodevo::ChangedSpring{.spring = spring, .material = material};
+    return evodevo::ChangedSpring{.material = material};
   }
 };
 

@@ -6,18 +6,21 @@
 namespace {
 
 /// At each application, the rest length of every spring changes by the same amount, so that it goes from L at birth to
-/// Spring::growth * L at the last application. Encodings with a parameter `size_range` set Spring::growth; springs that
-/// are added during development do not grow.
+/// (1 + growth) L at the last application. Encodings with a parameter `size_range` give springs their growth. A spring
+/// that is added during development grows like the one whose nature it takes over; others do not grow.
 class BallisticGrowth final : public evodevo::Devo {
  public:
   evodevo::RecordRequest observes() const override { return {}; }
-  bool uses_growth() const override { return true; }
+  evodevo::Traits traits() const override { return {.needs_at_birth = spring_memory()}; }
+  std::vector<std::string> spring_memory() const override { return {"growth"}; }
 
   void develop(const evodevo::DevoContext& context, evodevo::Edits& edits, evodevo::Rng&) const override {
-    const auto& springs = context.body.springs;
-    if (std::all_of(springs.begin(), springs.end(), [](const auto& spring) { return spring.growth == 1; })) return;
-    edits.growth = {context.application - 1.0, static_cast<double>(context.application),
-                    static_cast<double>(context.applications)};
+    bool grows = false;
+    for (std::size_t s = 0; s < context.spring_memory.size(); ++s) grows = grows || context.spring_memory[s][0] != 0;
+    if (grows)
+      edits.scale_lengths({.from = context.application - 1.0,
+                           .to = static_cast<double>(context.application),
+                           .whole = static_cast<double>(context.applications)});
   }
 };
 

@@ -7,29 +7,30 @@ namespace {
 
 constexpr double full_turn = 2 * 3.14159265358979323846;
 
-/// From its first application to its last, the phase of each muscle changes by Spring::phase_growth. Because it changes
+/// From its first application to its last, the phase of each muscle changes by its turn. Because it changes
 /// linearly with time, the muscle simply has another frequency meanwhile: the phase passes through all values between
 /// the first and the last one without a jump, and each muscle is changed twice, however many cycles there are. A
-/// schedule with one application changes phases at once. Encodings with a parameter `phase_range` set
-/// Spring::phase_growth; springs that take over the material of another one during development go on like it.
+/// schedule with one application changes phases at once. Encodings with a parameter `phase_range` give springs their
+/// turns; springs that take over the nature of another one during development go on like it.
 class BallisticPhase final : public evodevo::Devo {
  public:
   evodevo::RecordRequest observes() const override { return {}; }
-  bool uses_growth() const override { return true; }
+  evodevo::Traits traits() const override { return {.needs_at_birth = spring_memory()}; }
+  std::vector<std::string> spring_memory() const override { return {"turn"}; }
 
   void develop(const evodevo::DevoContext& context, evodevo::Edits& edits, evodevo::Rng&) const override {
     const bool begins = context.application == 1, ends = context.application == context.applications;
     if (!begins && !ends) return;
     const double whole = context.last_time - context.first_time;
     for (std::uint32_t s = 0; s < context.body.springs.size(); ++s) {
-      const evodevo::Spring& spring = context.body.springs[s];
-      evodevo::Material material = context.body.materials[spring.material];
-      if (spring.phase_growth == 0 || material.amplitude == 0) continue;
+      const double turn = context.spring_memory[s][0];  // rad
+      evodevo::Material material = context.body.materials[context.body.springs[s].material];
+      if (turn == 0 || material.amplitude == 0) continue;
       if (begins && ends)
-        material.phase += spring.phase_growth;
+        material.phase += turn;
       else
-        turn_faster(material, (begins ? 1 : -1) * spring.phase_growth / whole, context.time);
-      edits.changed_springs.push_back({.spring = s, .material = material});
+        turn_faster(material, (begins ? 1 : -1) * turn / whole, context.time);
+      edits.change_spring(s, {.material = material});
     }
   }
 

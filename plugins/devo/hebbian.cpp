@@ -8,7 +8,6 @@
 namespace {
 
 using evodevo::Body;
-using evodevo::Causes;
 using evodevo::DevoContext;
 using evodevo::Edits;
 using evodevo::Spring;
@@ -39,12 +38,12 @@ class Hebbian final : public evodevo::Devo {
   }
 
   evodevo::RecordRequest observes() const override { return {.muscle_work = true, .tension = true}; }
-  evodevo::Measure measure(Causes::List) const override { return {"joint activity", "1"}; }
+  evodevo::Measure measure(evodevo::EditKind) const override { return {"joint activity", "1"}; }
   std::vector<std::string> spring_memory() const override { return {"activity"}; }
 
   void develop(const DevoContext& context, Edits& edits, evodevo::Rng&) const override {
-    edits.spring_memory = running_mean(context);
-    const std::vector<double> joint = joint_activity(context.body, edits.spring_memory);
+    const std::vector<double> activity = running_mean(context), joint = joint_activity(context.body, activity);
+    for (std::uint32_t s = 0; s < activity.size(); ++s) edits.remember_spring(s, {activity[s]});
     if (joint.empty()) return;
     const Body& body = context.body;
     const auto stiffness = [&](std::uint32_t s) { return body.stiffness(body.springs[s]); };
@@ -56,10 +55,7 @@ class Hebbian final : public evodevo::Devo {
     for (std::uint32_t s = 0; s < joint.size(); ++s) {
       const double before = stiffness(s), grown = before * (1 + rate_ * joint[s]) * (before_all / after_all),
                    after = evodevo::within_bounds(before, grown, low_, high_);
-      const auto change = evodevo::with_stiffness(body, s, after);
-      if (!change) continue;
-      edits.changed_springs.push_back(*change);
-      edits.causes.changed_springs.push_back(joint[s]);
+      if (const auto change = evodevo::with_stiffness(body, s, after, joint[s])) edits.change_spring(s, *change);
     }
   }
 

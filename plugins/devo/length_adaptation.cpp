@@ -23,7 +23,7 @@ class LengthAdaptation final : public evodevo::Adaptation {
 
   std::optional<evodevo::ChangedSpring> changed(const evodevo::Body& body, std::uint32_t index,
                                                 double value) const override {
-    return evodevo::ChangedSpring{.spring = index, .rest_length = value * body.springs[index].first_length};
+    return evodevo::ChangedSpring{.rest_length = value * body.springs[index].first_length};
   }
 };
 

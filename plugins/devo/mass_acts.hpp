@@ -57,6 +57,7 @@ class Table {
   Table(std::size_t masses, std::size_t columns) : values_(masses * columns), columns_(columns) {}
   double& at(std::size_t mass, std::size_t column) { return values_[mass * columns_ + column]; }
   double at(std::size_t mass, std::size_t column) const { return values_[mass * columns_ + column]; }
+  std::span<const double> row(std::size_t mass) const { return std::span(values_).subspan(mass * columns_, columns_); }
   std::size_t columns() const { return columns_; }
 
  private:
@@ -88,8 +89,7 @@ class MassActs {
       gone_[*spring] = true;
       --springs_[body_.springs[*spring].a];
       --springs_[body_.springs[*spring].b];
-      edits_.removed_springs.push_back(*spring);
-      edits_.causes.removed_springs.push_back(out_.at(mass, let_go));
+      edits_.remove_spring(*spring, {.cause = out_.at(mass, let_go)});
       return true;
     });
   }
@@ -130,10 +130,7 @@ class MassActs {
       if (gone_[s] || sum == 0) continue;
       const double before = body_.stiffness(body_.springs[s]),
                    after = within_bounds(before, before * std::exp(limits_.rate * sum), limits_.low, limits_.high);
-      const auto change = with_stiffness(body_, s, after);
-      if (!change) continue;
-      edits_.changed_springs.push_back(*change);
-      edits_.causes.changed_springs.push_back(sum);
+      if (const auto change = with_stiffness(body_, s, after, sum)) edits_.change_spring(s, *change);
     }
   }
 
@@ -222,7 +219,7 @@ class MassActs {
   /// What a new spring is made of.
   struct Tissue {
     Material material;
-    float phase_growth = 0;  ///< rad
+    std::optional<std::uint32_t> like = {};  ///< the spring from which it comes; none: it is mixed
   };
 
   /// Returns the tissue of a new spring: the mean of the materials of its masses or, if one has none, the tissue of the
@@ -232,18 +229,16 @@ class MassActs {
     if (const auto mixed = material_between(body_, body_.masses[mass].material, body_.masses[other].material)) {
       tissue = {*mixed};
     } else if (const auto own = partners_.springs_of(mass); !own.empty()) {
-      const Spring& model =
-          body_
-              .springs[*std::ranges::min_element(own, {}, [&](std::uint32_t spring) { return rank_at(mass, spring); })];
-      tissue = {body_.materials[model.material], model.phase_growth};
+      const std::uint32_t model =
+          *std::ranges::min_element(own, {}, [&](std::uint32_t spring) { return rank_at(mass, spring); });
+      tissue = {body_.materials[body_.springs[model].material], model};
     }
     return tissue && !is_air(tissue->material) ? tissue : std::nullopt;
   }
 
   /// Adds a spring from a mass of the body to another mass.
   void join(std::uint32_t mass, std::uint32_t other, const Tissue& tissue, double cause) {
-    edits_.new_springs.push_back({mass, other, tissue.material, {}, 1, tissue.phase_growth});
-    edits_.causes.new_springs.push_back(cause);
+    edits_.join(mass, other, tissue.material, {.like = tissue.like, .cause = cause});
     ++springs_[mass];
   }
 
@@ -288,11 +283,10 @@ class MassActs {
   bool bear(std::uint32_t mother, const Vec3& position) {
     const auto to_mother = tissue_between(mother, mother);
     if (!to_mother) return false;
-    const auto daughter = static_cast<std::uint32_t>(masses());
     const double cause = out_.at(mother, divide);
-    edits_.new_masses.push_back({position, context_.mass, body_.masses[mother].material, mother});
-    edits_.causes.new_masses.push_back(cause);
-    for (std::size_t m = actions; m < out_.columns(); ++m) edits_.mass_memory.push_back(out_.at(mother, m));
+    const std::uint32_t daughter =
+        edits_.divide(mother, position, {.material = body_.masses[mother].material, .cause = cause});
+    edits_.remember_mass(daughter, out_.row(mother).subspan(actions));
     join(mother, daughter, *to_mother, cause);
     std::vector<std::uint32_t> others;
     for (const std::uint32_t partner : partners_.of(mother))

@@ -16,7 +16,7 @@ class MassGrowth final : public evodevo::Devo {
 
   evodevo::Traits traits() const override { return {.locality = 60}; }
   evodevo::RecordRequest observes() const override { return arrival_.request(); }
-  evodevo::Measure measure(evodevo::Causes::List) const override { return arrival_.measure.measure(); }
+  evodevo::Measure measure(evodevo::EditKind) const override { return arrival_.measure.measure(); }
 
   void develop(const evodevo::DevoContext& context, evodevo::Edits& edits, evodevo::Rng& rng) const override {
     if (context.body.springs.empty()) return;

@@ -25,8 +25,8 @@ class MassTurnover final : public evodevo::Devo {
 
   evodevo::Traits traits() const override { return {.locality = 60}; }
   evodevo::RecordRequest observes() const override { return arrival_.request(); }
-  evodevo::Measure measure(evodevo::Causes::List list) const override {
-    if (list == &evodevo::Causes::removed_masses) return {"degree", "springs"};
+  evodevo::Measure measure(evodevo::EditKind edit) const override {
+    if (edit == evodevo::EditKind::removed_mass) return {"degree", "springs"};
     return arrival_.measure.measure();
   }
 
@@ -46,8 +46,7 @@ class MassTurnover final : public evodevo::Devo {
         arrivals.set_staying(mass, true);
     }
     if (!arrivals.come(edits)) return;
-    edits.removed_masses = removed;
-    for (const std::uint32_t mass : removed) edits.causes.removed_masses.push_back(static_cast<double>(degree[mass]));
+    for (const std::uint32_t mass : removed) edits.remove_mass(mass, {.cause = static_cast<double>(degree[mass])});
   }
 
  private:

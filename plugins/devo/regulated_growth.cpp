@@ -91,7 +91,7 @@ class RegulatedGrowth final : public evodevo::Devo {
   evodevo::RecordRequest observes() const override {
     return {.stress = true, .contact = true, .age = true, .degree = true, .load = true};
   }
-  evodevo::Measure measure(evodevo::Causes::List) const override { return {"output", "1"}; }
+  evodevo::Measure measure(evodevo::EditKind) const override { return {"output", "1"}; }
 
   std::vector<std::string> mass_memory() const override {
     std::vector<std::string> names = {"signal"};
@@ -117,8 +117,7 @@ class RegulatedGrowth final : public evodevo::Devo {
   void develop(const DevoContext& context, Edits& edits, Rng& rng) const override {
     const std::size_t masses = context.body.masses.size();
     const Table out = outputs(inputs(context, limits_), masses, context.own);
-    for (std::size_t i = 0; i < masses; ++i)
-      for (std::size_t m = evodevo::actions; m < out.columns(); ++m) edits.mass_memory.push_back(out.at(i, m));
+    for (std::uint32_t i = 0; i < masses; ++i) edits.remember_mass(i, out.row(i).subspan(evodevo::actions));
     evodevo::MassActs acts(limits_, context, out, edits);
     acts.let_springs_go();
     acts.reach_for_others();

@@ -134,7 +134,7 @@ class SpringTurnover final : public evodevo::Devo {
 
   evodevo::Traits traits() const override { return {.locality = 60}; }
   evodevo::RecordRequest observes() const override { return measure_.request(); }
-  evodevo::Measure measure(evodevo::Causes::List) const override { return measure_.measure(); }
+  evodevo::Measure measure(evodevo::EditKind) const override { return measure_.measure(); }
 
   void develop(const DevoContext& context, Edits& edits, Rng& rng) const override {
     const Body& body = context.body;
@@ -160,11 +160,10 @@ class SpringTurnover final : public evodevo::Devo {
       if (is_air(material)) continue;
       leaving.take();
       taken.insert(pair);
-      edits.removed_springs.push_back(leaves);
-      edits.causes.removed_springs.push_back(stress[leaves]);
-      edits.new_springs.push_back(
-          {a, b, material, {}, mixed ? 1 : gone.stiffness_factor, mixed ? 0 : gone.phase_growth});
-      if (beside) edits.causes.new_springs.push_back(stress[*beside]);
+      edits.remove_spring(leaves, {.cause = stress[leaves]});
+      evodevo::NewSpring comes{.cause = beside ? stress[*beside] : evodevo::no_cause};
+      if (!mixed) comes.stiffness_factor = gone.stiffness_factor, comes.like = leaves;
+      edits.join(a, b, material, comes);
     }
   }
 

@@ -47,13 +47,15 @@ class Cloud final : public evodevo::Encoding {
   }
 
   evodevo::Layout layout(const evodevo::EncodingContext& context) const override {
-    const auto materials = static_cast<std::uint32_t>(context.material_indices(materials_).size());
+    const auto chosen = context.material_indices(materials_);
+    const auto materials = static_cast<std::uint32_t>(chosen.size());
     evodevo::Layout layout;
     const auto site = layout.add_type({"site",
                                        {{-1, 1}, {-1, 1}, {-1, 1}, {0, 0, std::max(1u, materials)}},
                                        1,
                                        static_cast<std::uint32_t>(most_sites_),
                                        {"x", "y", "z", "material"}});
+    layout.types[site].name_options(site_material, names_of(context, chosen));
     for (std::int64_t i = 0; i < sites_; ++i) layout.add_block_of(site);
     return layout;
   }

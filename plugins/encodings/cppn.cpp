@@ -19,6 +19,10 @@ class Cppn final : public evodevo::LayeredNetworkEncoding {
     add_hidden_layer(layout, hidden());
     for (std::int64_t n = 0; n < outputs_in(context); ++n)
       layout.add_block(static_cast<std::uint32_t>(1 + hidden()), weight, "output");
+    for (evodevo::BlockType& type : layout.types) {
+      if (type.name != "neuron") continue;
+      type.name_options(0, evodevo::activation_names());
+    }
     layout.types.front().gene_names = {"function", "bias", "weight"};
     layout.types.back().gene_names = {"bias", "weight"};
     return layout;
@@ -37,7 +41,7 @@ class Cppn final : public evodevo::LayeredNetworkEncoding {
     const Matrix rows = next_rows(genes, hidden(), 2 + input.rows());
     Matrix values = sums(rows.rightCols(1 + input.rows()), input);
     for (Eigen::Index n = 0; n < values.rows(); ++n)
-      values.row(n) = values.row(n).unaryExpr(evodevo::activations.at(static_cast<std::size_t>(rows(n, 0))));
+      values.row(n) = values.row(n).unaryExpr(evodevo::activations.at(static_cast<std::size_t>(rows(n, 0))).value);
     return values;
   }
 

@@ -30,6 +30,7 @@ class Direct final : public evodevo::LatticeEncoding {
       if (genes > 0) layout.add_block(genes, choice(context), "springs");
     }
     layout.types.front().gene_names = {"material"};
+    layout.types.front().name_options(0, names_of(context, chosen(context)));
     return layout;
   }
 

@@ -32,7 +32,7 @@ class Neat final : public evodevo::NetworkEncoding {
     const auto outputs = static_cast<std::uint32_t>(outputs_in(context));
     require_at_least("nodes", nodes_, inputs + outputs, outputs);
     require_at_least("links", links_, inputs * outputs, outputs);
-    const neat::Types types = neat::add_types(layout, 3, evodevo::activations.size(),
+    const neat::Types types = neat::add_types(layout, 3, evodevo::activation_names(),
                                               static_cast<std::uint32_t>(nodes_), static_cast<std::uint32_t>(links_));
     for (std::uint32_t i = 0; i < inputs + outputs; ++i) layout.add_block_of(types.node);
     for (std::uint32_t i = 0; i < inputs * outputs; ++i) layout.add_block_of(types.link);
@@ -92,7 +92,7 @@ class Neat final : public evodevo::NetworkEncoding {
       compute(nodes, source, points);
       if (source.values.size() > 0) sum += link[neat::weight] * source.values;
     }
-    const auto activation = evodevo::activations.at(static_cast<std::size_t>(node.genes[neat::function]));
+    const auto activation = evodevo::activations.at(static_cast<std::size_t>(node.genes[neat::function])).value;
     if (!node.is_linear) sum = sum.unaryExpr(activation).eval();
     node.values = std::move(sum);
   }

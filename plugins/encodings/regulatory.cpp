@@ -195,6 +195,9 @@ class Regulatory final : public evodevo::Encoding {
                                        1,
                                        static_cast<std::uint32_t>(most_genes_),
                                        {"product", "input a", "weight a", "input b", "weight b", "bias"}});
+    layout.types[gene].name_options(Gene::product, product_names(context));
+    for (const std::size_t input : {Gene::input_a, Gene::input_b})
+      layout.types[gene].name_options(input, input_names(context));
     for (std::int64_t i = 0; i < genes_; ++i) layout.add_block_of(gene);
     return layout;
   }
@@ -223,6 +226,25 @@ class Regulatory final : public evodevo::Encoding {
     return products + memory() + context.material_indices(materials_).size();
   }
 
+  /// Returns the names of all products, in their order.
+  std::vector<std::string> product_names(const evodevo::EncodingContext& context) const {
+    std::vector<std::string> names = {"divide", "to x", "to y", "to z", "adhesion"};
+    for (std::size_t m = 0; m < memory(); ++m) names.push_back(memory_name(m));
+    for (const std::string& material : names_of(context, context.material_indices(materials_)))
+      names.push_back("material " + material);
+    return names;
+  }
+
+  /// Returns the names of all inputs: the products, then the surroundings.
+  std::vector<std::string> input_names(const evodevo::EncodingContext& context) const {
+    std::vector<std::string> names = product_names(context);
+    for (const char* name : {"signal beside", "free sites", "time", "x", "y", "z"}) names.emplace_back(name);
+    return names;
+  }
+
+  /// Returns the name under which masses remember a product.
+  static std::string memory_name(std::size_t m) { return m == 0 ? "signal" : "memory " + std::to_string(m); }
+
   Vec3 place_of(const Site& site) const {
     return spacing_ / std::sqrt(2) * Vec3{double(site[0]), double(site[1]), double(site[2])};
   }
@@ -248,7 +270,7 @@ class Regulatory final : public evodevo::Encoding {
   std::map<std::string, std::vector<double>> memories(const Embryo& embryo) const {
     std::map<std::string, std::vector<double>> memories;
     for (std::size_t m = 0; m < memory(); ++m) {
-      std::vector<double>& of_cells = memories[m == 0 ? "signal" : "memory " + std::to_string(m)];
+      std::vector<double>& of_cells = memories[memory_name(m)];
       for (std::size_t cell = 0; cell < embryo.size(); ++cell)
         of_cells.push_back(embryo.concentration(cell, products + m));
     }

@@ -45,7 +45,10 @@ class Voxel final : public evodevo::LatticeEncoding {
       else if (owns_phase(v) && !phases.empty())
         layout.add_block(phases, "mirrored voxel");
     }
-    for (evodevo::BlockType& type : layout.types) type.gene_names = gene_names();
+    for (evodevo::BlockType& type : layout.types) {
+      type.gene_names = gene_names();
+      if (type.genes.size() > phases.size()) type.name_options(phases.size(), names_of(context, chosen(context)));
+    }
     return layout;
   }
 
@@ -62,15 +65,20 @@ class Voxel final : public evodevo::LatticeEncoding {
     for (const evodevo::LatticeSpring& spring : lattice.springs) {
       if (blueprint.parallel && std::ranges::any_of(spring.voxels, is_solid)) {
         for (const std::uint32_t v : spring.voxels)
-          if (is_solid(v)) add_spring(blueprint.body, spring, {&v, 1}, voxels, context);
+          if (is_solid(v)) add_spring(blueprint, spring, {&v, 1}, voxels, context);
       } else {
-        add_spring(blueprint.body, spring, spring.voxels, voxels, context);
+        add_spring(blueprint, spring, spring.voxels, voxels, context);
       }
     }
     return blueprint;
   }
 
-  bool sets_growth() const override { return grows_ && (size_range_ > 0 || phase_range_ > 0); }
+  std::vector<std::string> spring_memory() const override {
+    std::vector<std::string> names;
+    if (grows_ && size_range_ > 0) names.push_back("growth");
+    if (grows_ && phase_range_ > 0) names.push_back("turn");
+    return names;
+  }
 
  private:
   static constexpr double full_turn = 2 * 3.14159265358979323846;
@@ -111,8 +119,9 @@ class Voxel final : public evodevo::LatticeEncoding {
   }
 
   /// Adds a spring with the mean traits of some voxels, unless all of them are air.
-  static void add_spring(evodevo::Body& body, const evodevo::LatticeSpring& spring, std::span<const std::uint32_t> of,
-                         const std::vector<Traits>& voxels, const evodevo::EncodingContext& context) {
+  void add_spring(evodevo::Blueprint& blueprint, const evodevo::LatticeSpring& spring,
+                  std::span<const std::uint32_t> of, const std::vector<Traits>& voxels,
+                  const evodevo::EncodingContext& context) const {
     std::vector<std::int32_t> around;
     Course size, phase;
     for (const std::uint32_t v : of) {
@@ -124,11 +133,13 @@ class Voxel final : public evodevo::LatticeEncoding {
     Material material = mean_of_solid(context.materials, std::move(around));
     const bool is_muscle = material.amplitude != 0;
     if (is_muscle) material.phase += phase.birth / size.count * full_turn;
-    if (!join(body, spring, material)) return;
-    evodevo::Spring& joined = body.springs.back();
-    joined.rest_length *= size.birth / size.count;
-    joined.growth = static_cast<float>(size.end / size.birth);
-    if (is_muscle) joined.phase_growth = static_cast<float>((phase.end - phase.birth) / phase.count * full_turn);
+    if (!join(blueprint.body, spring, material)) return;
+    blueprint.body.springs.back().rest_length *= size.birth / size.count;
+    if (!grows_) return;
+    const double turn = is_muscle ? (phase.end - phase.birth) / phase.count * full_turn : 0;
+    if (size_range_ > 0)
+      blueprint.spring_memory["growth"].push_back(double{static_cast<float>(size.end / size.birth)} - 1);
+    if (phase_range_ > 0) blueprint.spring_memory["turn"].push_back(double{static_cast<float>(turn)});
   }
 
   /// Gives each mass an eighth of its mass for each solid voxel of which it is a corner; other masses, which have no

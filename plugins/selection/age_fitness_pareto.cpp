@@ -1,25 +1,25 @@
 // Age-fitness Pareto optimisation (Schmidt & Lipson 2011; paper, section IV-F).
-#include "evodevo/helpers/selection/pareto.hpp"
 #include "evodevo/helpers/rows.hpp"
+#include "evodevo/helpers/selection/pareto.hpp"
 #include "evodevo/plugin.hpp"
 
 namespace {
 
-using evodevo::Candidate;
+using evodevo::Couple;
+using evodevo::SelectionContext;
+using evodevo::Survival;
 
 /// Youth is an additional objective, so that old champions do not displace new individuals at once. Whole Pareto layers
 /// survive, the front first. Of the first layer that does not fit into the population as a whole, the least crowded
 /// members survive (Deb et al. 2002).
 class AgeFitnessPareto final : public evodevo::Selection {
  public:
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const Candidate> rows, std::uint32_t count,
-                                                               evodevo::Rng& rng) const override {
-    return draw_pairs(rows, count, rng, evodevo::draw_any);
+  std::vector<Couple> parents(const SelectionContext& context, std::uint32_t count, evodevo::Rng& rng) const override {
+    return draw_pairs(context.rows, count, rng, evodevo::draw_any);
   }
 
-  std::vector<std::uint32_t> survivors(std::span<const Candidate> rows, std::uint32_t population,
-                                       evodevo::Rng&) const override {
-    return evodevo::best_layers(evodevo::scores_and_youth(rows), best_first(rows), population);
+  Survival survivors(const SelectionContext& context, std::uint32_t population, evodevo::Rng&) const override {
+    return evodevo::best_layers(evodevo::scores_and_youth(context.rows), best_first(context.rows), population);
   }
 };
 

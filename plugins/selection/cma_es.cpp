@@ -2,7 +2,6 @@
 #include "evodevo/helpers/selection/cma_es.hpp"
 
 #include "evodevo/helpers/rows.hpp"
-#include "evodevo/helpers/selection/memory.hpp"
 #include "evodevo/plugin.hpp"
 
 namespace {
@@ -20,12 +19,10 @@ class Cma final : public evodevo::Selection {
            "Standard deviation of the genes in the first generation, relative to their ranges.");
   }
 
-  evodevo::Traits traits() const override {
-    return {.makes_children = true, .needs_real_genes = true, .needs_memory = true, .least_children = 2};
-  }
+  evodevo::Traits traits() const override { return {.needs_real_genes = true, .least_children = 2}; }
+  std::vector<std::string> memory() const override { return {"distribution"}; }
 
-  std::vector<evodevo::Child> children(const SelectionContext& context, std::uint32_t count,
-                                       evodevo::Rng& rng) const override {
+  evodevo::Offspring children(const SelectionContext& context, std::uint32_t count, evodevo::Rng& rng) const override {
     const auto genes = specs(context.layout);
     std::vector<evodevo::Child> children;
     for (const auto& point : distribution(context).sample(count, rng)) {
@@ -35,13 +32,13 @@ class Cma final : public evodevo::Selection {
         const double value = is_free(genes[i]) ? genes[i].low + *coordinate++ * range(genes[i]) : genes[i].low;
         genome[i] = std::clamp(static_cast<float>(value), genes[i].low, genes[i].high);
       }
-      children.push_back({genome});
+      children.push_back({std::move(genome)});
     }
     return children;
   }
 
-  evodevo::Survival survive(const SelectionContext& context, std::uint32_t population,
-                            evodevo::Rng& rng) const override {
+  evodevo::Survival survivors(const SelectionContext& context, std::uint32_t population,
+                              evodevo::Rng& rng) const override {
     evodevo::Survival survival{best_first(context.rows)};
     const auto genes = specs(context.layout);
     std::vector<std::vector<double>> points;
@@ -59,9 +56,7 @@ class Cma final : public evodevo::Selection {
     }
     auto learned = distribution(context);
     learned.update(points, ranks, rng);
-    evodevo::MemoryWriter writer;
-    writer.write(learned.state());
-    survival.memory = writer.bytes();
+    survival.memory = evodevo::SelectionMemory{.lists = {{"distribution", learned.state()}}};
     survival.rows = evodevo::first_rows(std::move(survival.rows), population);
     return survival;
   }
@@ -87,10 +82,7 @@ class Cma final : public evodevo::Selection {
                                std::to_string(most_genes) + "; choose another encoding, or the selection " +
                                "\"differential\"");
     if (context.memory.empty()) return {genes, step_};
-    evodevo::MemoryReader reader(context.memory);
-    const auto state = reader.read_list<double>();
-    reader.finish();
-    return {genes, state};
+    return {genes, context.memory.list("distribution")};
   }
 
   double step_ = 0.3;

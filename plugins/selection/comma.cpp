@@ -4,7 +4,9 @@
 
 namespace {
 
-using evodevo::Candidate;
+using evodevo::Couple;
+using evodevo::SelectionContext;
+using evodevo::Survival;
 
 /// Of the newborns, the best survive. Those who were alive before fill only the places that are left if too few
 /// newborns did not fail. All individuals have the same chance to breed. The experiment should have several times as
@@ -13,13 +15,12 @@ class Comma final : public evodevo::Selection {
  public:
   evodevo::Traits traits() const override { return {.is_elitist = false}; }
 
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const Candidate> rows, std::uint32_t count,
-                                                               evodevo::Rng& rng) const override {
-    return draw_pairs(rows, count, rng, evodevo::draw_any);
+  std::vector<Couple> parents(const SelectionContext& context, std::uint32_t count, evodevo::Rng& rng) const override {
+    return draw_pairs(context.rows, count, rng, evodevo::draw_any);
   }
 
-  std::vector<std::uint32_t> survivors(std::span<const Candidate> rows, std::uint32_t population,
-                                       evodevo::Rng&) const override {
+  Survival survivors(const SelectionContext& context, std::uint32_t population, evodevo::Rng&) const override {
+    const auto rows = context.rows;
     auto living = best_first(rows);
     const auto failed = std::partition_point(living.begin(), living.end(), [&](auto i) { return rows[i].ok(); });
     const auto newborn = [&](std::uint32_t i) { return rows[i].is_newborn; };

@@ -1,12 +1,14 @@
 // Differential evolution, DE/rand/1/bin (Storn and Price 1997).
+#include <tuple>
+
 #include "evodevo/helpers/rows.hpp"
 #include "evodevo/plugin.hpp"
 
 namespace {
 
-using evodevo::Candidate;
 using evodevo::GeneSpec;
 using evodevo::Genome;
+using evodevo::SelectionContext;
 
 /// Each child competes with its parent for the parent's place, and takes it unless its first score is lower. If a
 /// parent has several children, only the best of them competes. Those who lose survive only if places are left, or are
@@ -20,12 +22,9 @@ class Differential final : public evodevo::Selection {
            "Probability that a gene comes from that sum, and not from the parent.");
   }
 
-  evodevo::Traits traits() const override {
-    return {.makes_children = true, .needs_real_genes = true, .least_population = least};
-  }
+  evodevo::Traits traits() const override { return {.needs_real_genes = true, .least_population = least}; }
 
-  std::vector<evodevo::Child> children(const evodevo::SelectionContext& context, std::uint32_t count,
-                                       evodevo::Rng& rng) const override {
+  evodevo::Offspring children(const SelectionContext& context, std::uint32_t count, evodevo::Rng& rng) const override {
     std::vector<evodevo::Child> children;
     const auto order = by_genes(context.rows);
     std::vector<std::uint32_t> turns;  // everyone is a parent once before anyone is again
@@ -44,8 +43,8 @@ class Differential final : public evodevo::Selection {
     return children;
   }
 
-  std::vector<std::uint32_t> survivors(std::span<const Candidate> rows, std::uint32_t population,
-                                       evodevo::Rng&) const override {
+  evodevo::Survival survivors(const SelectionContext& context, std::uint32_t population, evodevo::Rng&) const override {
+    const auto rows = context.rows;
     const auto order = best_first(rows);
     const auto lost = lost_challenges(
         rows, order, [&](auto child, auto parent) { return !evodevo::is_better(rows[parent], rows[child]); });
@@ -59,17 +58,16 @@ class Differential final : public evodevo::Selection {
  private:
   static constexpr std::uint32_t least = 4;  ///< the parent, and three others for the sum
 
-  /// Returns the rows in an order that depends on their genes alone: individuals that failed breed too, and scores do
-  /// not tell them apart.
-  static std::vector<std::uint32_t> by_genes(std::span<const Candidate> rows) {
+  /// Returns the rows in the order of their genes, ties by id: individuals that failed breed too, and scores do not
+  /// tell them apart.
+  static std::vector<std::uint32_t> by_genes(std::span<const evodevo::Candidate> rows) {
     std::vector<std::uint32_t> order(rows.size());
     std::iota(order.begin(), order.end(), 0u);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](auto a, auto b) { return rows[a].genome->genes < rows[b].genome->genes; });
+    std::ranges::sort(order, {}, [&](auto row) { return std::tie(rows[row].genome->genes, rows[row].id); });
     return order;
   }
 
-  Genome varied(const evodevo::SelectionContext& context, const std::vector<std::uint32_t>& order, std::uint32_t parent,
+  Genome varied(const SelectionContext& context, const std::vector<std::uint32_t>& order, std::uint32_t parent,
                 evodevo::Rng& rng) const {
     auto others = order;
     std::erase(others, parent);

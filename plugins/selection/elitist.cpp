@@ -4,7 +4,9 @@
 
 namespace {
 
-using evodevo::Candidate;
+using evodevo::Couple;
+using evodevo::SelectionContext;
+using evodevo::Survival;
 
 /// The best individual is the one with the highest first score. Ties are broken by the other scores, then by youth.
 class Elitist final : public evodevo::Selection {
@@ -14,14 +16,12 @@ class Elitist final : public evodevo::Selection {
               "Number of individuals drawn for each parent, of which the best breeds.");
   }
 
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const Candidate> rows, std::uint32_t count,
-                                                               evodevo::Rng& rng) const override {
-    return draw_pairs(rows, count, rng, evodevo::Tournament{tournament_});
+  std::vector<Couple> parents(const SelectionContext& context, std::uint32_t count, evodevo::Rng& rng) const override {
+    return draw_pairs(context.rows, count, rng, evodevo::Tournament{tournament_});
   }
 
-  std::vector<std::uint32_t> survivors(std::span<const Candidate> rows, std::uint32_t population,
-                                       evodevo::Rng&) const override {
-    return evodevo::first_rows(best_first(rows), population);
+  Survival survivors(const SelectionContext& context, std::uint32_t population, evodevo::Rng&) const override {
+    return evodevo::first_rows(best_first(context.rows), population);
   }
 
  private:

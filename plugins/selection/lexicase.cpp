@@ -16,17 +16,15 @@ class Lexicase final : public evodevo::Selection {
                     "scores in each case.");
   }
 
-  evodevo::Traits traits() const override { return {.chooses_survivors = false}; }
-
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> couples(const evodevo::SelectionContext& context,
-                                                               std::uint32_t count, evodevo::Rng& rng) const override {
+  std::vector<evodevo::Couple> parents(const evodevo::SelectionContext& context, std::uint32_t count,
+                                       evodevo::Rng& rng) const override {
     const auto pool = breeding_rows(context.rows);
     std::vector<evodevo::CaseScores> scores;
     for (const std::uint32_t row : pool) scores.push_back(context.rows[row].cases);
     auto tolerance = evodevo::median_deviations(scores);
     if (tolerance_) std::fill(tolerance.begin(), tolerance.end(), *tolerance_);
 
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> couples;
+    std::vector<evodevo::Couple> couples;
     for (std::uint32_t i = 0; i < count && !pool.empty(); ++i) {
       const std::uint32_t parent = evodevo::draw_lexicase(scores, tolerance, rng);
       std::uint32_t mate = parent;
@@ -36,7 +34,7 @@ class Lexicase final : public evodevo::Selection {
         mate = evodevo::draw_lexicase(others, tolerance, rng);
         if (mate >= parent) ++mate;  // an index into `others` leaves out the parent
       }
-      couples.emplace_back(pool[parent], pool[mate]);
+      couples.push_back({pool[parent], pool[mate]});
     }
     return couples;
   }

@@ -3,13 +3,13 @@
 #include <set>
 
 #include "evodevo/helpers/rows.hpp"
-#include "evodevo/helpers/selection/memory.hpp"
 #include "evodevo/helpers/selection/niches.hpp"
 #include "evodevo/plugin.hpp"
 
 namespace {
 
 using evodevo::Coordinates;
+using evodevo::SelectionContext;
 
 /// The space of the descriptors is divided into cells, and the best individual of each cell survives: the population is
 /// the map. Individuals are compared by their first score; ties are broken by the other scores, then by youth. All
@@ -25,16 +25,18 @@ class MapElites final : public evodevo::Selection {
 
   evodevo::Traits traits() const override { return {.least_descriptors = 1}; }
   std::vector<evodevo::NoteTitle> notes() const override { return {{.name = "cell", .is_label = true}}; }
+  std::vector<std::string> memory() const override {
+    return cells_ == "grid" ? std::vector<std::string>() : std::vector<std::string>{"centres"};
+  }
   /// Draws the same cells in all runs, so that their maps can be compared.
   void prepare(const evodevo::EncodingContext& context) override { rng_ = context.rng(1); }
 
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const evodevo::Candidate> rows,
-                                                               std::uint32_t count, evodevo::Rng& rng) const override {
-    return draw_pairs(rows, count, rng, evodevo::draw_any);
+  std::vector<evodevo::Couple> parents(const SelectionContext& context, std::uint32_t count,
+                                       evodevo::Rng& rng) const override {
+    return draw_pairs(context.rows, count, rng, evodevo::draw_any);
   }
 
-  evodevo::Survival survive(const evodevo::SelectionContext& context, std::uint32_t population,
-                            evodevo::Rng&) const override {
+  evodevo::Survival survivors(const SelectionContext& context, std::uint32_t population, evodevo::Rng&) const override {
     const bool is_grid = cells_ == "grid";
     const evodevo::Neighbours centres(is_grid ? std::vector<Coordinates>() : centres_in(context));
     const auto order = breeding_rows(context.rows);
@@ -52,27 +54,19 @@ class MapElites final : public evodevo::Selection {
       if (filled.insert(cell).second) survival.rows.push_back(row);
     }
     survival.rows = evodevo::first_rows(std::move(survival.rows), population);
-    if (is_grid) return survival;
-    evodevo::MemoryWriter writer;
-    writer.write(centres.places());
-    survival.memory = writer.bytes();
+    if (!is_grid && context.memory.empty())
+      survival.memory = evodevo::SelectionMemory{.lists = {{"centres", evodevo::list_of_places(centres.places())}}};
     return survival;
   }
 
  private:
-  std::vector<Coordinates> centres_in(const evodevo::SelectionContext& context) const {
+  std::vector<Coordinates> centres_in(const SelectionContext& context) const {
     const std::size_t dimension = context.descriptors.size();
     if (context.memory.empty()) {
       evodevo::Rng rng = *rng_;
       return evodevo::voronoi_centres(static_cast<std::uint32_t>(count_), dimension, rng);
     }
-    evodevo::MemoryReader reader(context.memory);
-    const auto centres = reader.read_lists<double>();
-    reader.finish();
-    const auto fits = [&](const Coordinates& centre) { return evodevo::is_place(centre, dimension); };
-    if (centres.empty() || !std::all_of(centres.begin(), centres.end(), fits))
-      reader.fail("does not have centres of " + std::to_string(dimension) + " descriptors from -1e6 to 1e6");
-    return centres;
+    return evodevo::places_in(context.memory, "centres", static_cast<std::size_t>(count_), dimension);
   }
 
   std::string cells_ = "grid";

@@ -3,14 +3,15 @@
 
 #include <set>
 
-#include "evodevo/helpers/selection/pareto.hpp"
 #include "evodevo/helpers/rows.hpp"
 #include "evodevo/helpers/selection/memory.hpp"
+#include "evodevo/helpers/selection/pareto.hpp"
 #include "evodevo/plugin.hpp"
 
 namespace {
 
 using evodevo::Behaviour;
+using evodevo::SelectionContext;
 
 /// The individuals survive whose descriptors are farthest from those of their nearest neighbours, in the population and
 /// in an archive; who is in both counts once. With local competition, the number of these neighbours that have a lower
@@ -29,14 +30,15 @@ class NoveltySearch final : public evodevo::Selection {
 
   evodevo::Traits traits() const override { return {.is_elitist = false, .least_descriptors = 1}; }
   std::vector<evodevo::NoteTitle> notes() const override { return {{"novelty"}}; }
+  std::vector<std::string> memory() const override { return {"ids", "scores", "places"}; }
 
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const evodevo::Candidate> rows,
-                                                               std::uint32_t count, evodevo::Rng& rng) const override {
-    return draw_pairs(rows, count, rng, evodevo::draw_any);
+  std::vector<evodevo::Couple> parents(const SelectionContext& context, std::uint32_t count,
+                                       evodevo::Rng& rng) const override {
+    return draw_pairs(context.rows, count, rng, evodevo::draw_any);
   }
 
-  evodevo::Survival survive(const evodevo::SelectionContext& context, std::uint32_t population,
-                            evodevo::Rng& rng) const override {
+  evodevo::Survival survivors(const SelectionContext& context, std::uint32_t population,
+                              evodevo::Rng& rng) const override {
     const auto order = best_first(context.rows);
     std::vector<Behaviour> behaviours;  // of those who did not fail, which come first
     for (const std::uint32_t row : order)
@@ -60,7 +62,7 @@ class NoveltySearch final : public evodevo::Selection {
     rng.shuffle(newborns);
     for (const std::uint32_t row : evodevo::first_rows(std::move(newborns), static_cast<std::size_t>(archived_)))
       archive.add(context.rows[row].id, behaviour_of(context.rows[row], context));
-    survival.memory = archive.written();
+    survival.memory = archive.memory();
     return survival;
   }
 
@@ -68,18 +70,14 @@ class NoveltySearch final : public evodevo::Selection {
   /// The memory: individuals with their behaviours.
   class Archive {
    public:
-    explicit Archive(const evodevo::SelectionContext& context) {
+    explicit Archive(const SelectionContext& context) {
       if (context.memory.empty()) return;
-      evodevo::MemoryReader reader(context.memory);
-      ids_ = reader.read_list<std::uint32_t>();
-      scores_ = reader.read_list<double>();
-      places_ = reader.read_lists<double>();
-      reader.finish();
-      const auto fits = [&](const auto& place) { return evodevo::is_place(place, context.descriptors.size()); };
-      if (scores_.size() != ids_.size() || places_.size() != ids_.size() ||
-          !std::all_of(places_.begin(), places_.end(), fits))
-        reader.fail("does not have " + std::to_string(context.descriptors.size()) +
-                    " descriptors from -1e6 to 1e6 for each individual");
+      ids_ = whole_numbers(context.memory, "ids");
+      scores_ = context.memory.list("scores");
+      places_ = places_in(context.memory, "places", ids_.size(), context.descriptors.size());
+      if (scores_.size() != ids_.size())
+        evodevo::SelectionMemory::fail("has " + std::to_string(scores_.size()) + " scores, expected " +
+                                       std::to_string(ids_.size()));
     }
 
     /// Forgets those in the table who have lost their fitness since they were archived.
@@ -110,12 +108,10 @@ class NoveltySearch final : public evodevo::Selection {
       scores_.push_back(behaviour.score);
       places_.push_back(behaviour.place);
     }
-    std::vector<std::byte> written() const {
-      evodevo::MemoryWriter writer;
-      writer.write(ids_);
-      writer.write(scores_);
-      writer.write(places_);
-      return writer.bytes();
+    evodevo::SelectionMemory memory() const {
+      return {.lists = {{"ids", evodevo::memory_list(ids_)},
+                        {"scores", scores_},
+                        {"places", evodevo::list_of_places(places_)}}};
     }
 
    private:
@@ -124,7 +120,7 @@ class NoveltySearch final : public evodevo::Selection {
     std::vector<evodevo::Coordinates> places_;
   };
 
-  static Behaviour behaviour_of(const evodevo::Candidate& row, const evodevo::SelectionContext& context) {
+  static Behaviour behaviour_of(const evodevo::Candidate& row, const SelectionContext& context) {
     return {place_of(row, context.descriptors), row.scores[0]};
   }
 

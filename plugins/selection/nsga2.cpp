@@ -1,11 +1,13 @@
 // NSGA-II: non-dominated sorting and crowding (Deb et al. 2002).
-#include "evodevo/helpers/selection/pareto.hpp"
 #include "evodevo/helpers/rows.hpp"
+#include "evodevo/helpers/selection/pareto.hpp"
 #include "evodevo/plugin.hpp"
 
 namespace {
 
-using evodevo::Candidate;
+using evodevo::Couple;
+using evodevo::SelectionContext;
+using evodevo::Survival;
 
 /// The best Pareto layers survive. Of the first layer that does not fit into the population as a whole, the least
 /// crowded members survive; crowding is measured anew after each removal, which spreads them more evenly (Kukkonen and
@@ -14,17 +16,16 @@ using evodevo::Candidate;
 /// constraints least.
 class Nsga2 final : public evodevo::Selection {
  public:
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const Candidate> rows, std::uint32_t count,
-                                                               evodevo::Rng& rng) const override {
+  std::vector<Couple> parents(const SelectionContext& context, std::uint32_t count, evodevo::Rng& rng) const override {
+    const auto rows = context.rows;
     auto pool = breeding_rows(rows);
     rng.shuffle(pool);  // a random order among equals
     std::ranges::stable_sort(pool, {}, [&](std::uint32_t row) { return rows[row].violation; });  // if all have failed
     return draw_pairs(by_layer_and_room(evodevo::points_of(rows), std::move(pool)), count, rng, evodevo::Tournament{2});
   }
 
-  std::vector<std::uint32_t> survivors(std::span<const Candidate> rows, std::uint32_t population,
-                                       evodevo::Rng&) const override {
-    return evodevo::best_layers(evodevo::points_of(rows), best_first(rows), population);
+  Survival survivors(const SelectionContext& context, std::uint32_t population, evodevo::Rng&) const override {
+    return evodevo::best_layers(evodevo::points_of(context.rows), best_first(context.rows), population);
   }
 
  private:

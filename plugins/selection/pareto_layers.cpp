@@ -1,12 +1,14 @@
 // "A solution is considered better if it belongs to a higher layer, or if belongs to the same layer with higher
 // fitness. [...] During replacement, all solutions on the Pareto Front are exempt" (paper, section IV-F).
-#include "evodevo/helpers/selection/pareto.hpp"
 #include "evodevo/helpers/rows.hpp"
+#include "evodevo/helpers/selection/pareto.hpp"
 #include "evodevo/plugin.hpp"
 
 namespace {
 
-using evodevo::Candidate;
+using evodevo::Couple;
+using evodevo::SelectionContext;
+using evodevo::Survival;
 
 /// The paper's replacement. The paper leaves some choices open. Here, a child competes with its parent for the parent's
 /// place; if a parent has several children, only the best of them can win. Individuals without a parent compete for the
@@ -19,13 +21,12 @@ class ParetoLayers final : public evodevo::Selection {
     p.flag(age_, "age", "Whether a low age is an objective in addition to those of the fitness operators.");
   }
 
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const Candidate> rows, std::uint32_t count,
-                                                               evodevo::Rng& rng) const override {
-    return draw_pairs(rows, count, rng, evodevo::draw_any);
+  std::vector<Couple> parents(const SelectionContext& context, std::uint32_t count, evodevo::Rng& rng) const override {
+    return draw_pairs(context.rows, count, rng, evodevo::draw_any);
   }
 
-  std::vector<std::uint32_t> survivors(std::span<const Candidate> rows, std::uint32_t population,
-                                       evodevo::Rng&) const override {
+  Survival survivors(const SelectionContext& context, std::uint32_t population, evodevo::Rng&) const override {
+    const auto rows = context.rows;
     auto order = best_first(rows);
     const auto points = age_ ? evodevo::scores_and_youth(rows) : evodevo::points_of(rows);
     const auto layer = evodevo::pareto_layers(points);

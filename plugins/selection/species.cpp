@@ -30,12 +30,12 @@ class SpeciesSelection final : public evodevo::Selection {
     p.real(weight_, "gene_weight", {0, 100, "1"}, "Weight of the differences between homologous genes.");
   }
 
-  evodevo::Traits traits() const override { return {.needs_memory = true}; }
   std::vector<evodevo::NoteTitle> notes() const override { return {{.name = "species", .is_label = true}}; }
+  std::vector<std::string> memory() const override { return {"ids", "species", "next"}; }
 
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> couples(const SelectionContext& context, std::uint32_t count,
-                                                               evodevo::Rng& rng) const override {
-    const Known known(context.memory);
+  std::vector<evodevo::Couple> parents(const SelectionContext& context, std::uint32_t count,
+                                       evodevo::Rng& rng) const override {
+    const Known known = Known::in(context.memory);
     const auto pool = breeding_rows(context.rows);
     std::map<std::uint32_t, Numbers> members;  // positions in the pool
     for (std::uint32_t i = 0; i < pool.size(); ++i) members[known.species_of(context.rows[pool[i]])].push_back(i);
@@ -45,7 +45,7 @@ class SpeciesSelection final : public evodevo::Selection {
       sums.push_back(sums.back() +
                      worth[i] / static_cast<double>(members[known.species_of(context.rows[pool[i]])].size()));
 
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> couples;
+    std::vector<evodevo::Couple> couples;
     for (std::uint32_t i = 0; i < count && !pool.empty(); ++i) {
       const auto found = std::upper_bound(sums.begin() + 1, sums.end() - 1, rng.uniform() * sums.back());
       const auto parent = static_cast<std::uint32_t>(found - sums.begin() - 1);
@@ -55,51 +55,50 @@ class SpeciesSelection final : public evodevo::Selection {
         std::iota(others.begin(), others.end(), 0u);
       }
       if (others.size() > 1) std::erase(others, parent);
-      couples.emplace_back(pool[parent], pool[others[rng.below(static_cast<std::uint32_t>(others.size()))]]);
+      couples.push_back({pool[parent], pool[others[rng.below(static_cast<std::uint32_t>(others.size()))]]});
     }
     return couples;
   }
 
-  evodevo::Survival survive(const SelectionContext& context, std::uint32_t population, evodevo::Rng&) const override {
-    Known known(context.memory);
+  evodevo::Survival survivors(const SelectionContext& context, std::uint32_t population, evodevo::Rng&) const override {
+    Known known = Known::in(context.memory);
     const auto order = breeding_rows(context.rows);
     const Numbers species = classified(context, order, known);
     evodevo::Survival survival;
     for (std::uint32_t i = 0; i < order.size(); ++i)
       if (context.rows[order[i]].ok()) survival.notes.push_back({order[i], 0, static_cast<double>(species[i])});
 
-    Known living{{}};
-    living.next = known.next;
+    Known living{.next = known.next};
     for (const std::uint32_t i : chosen(shares(context.rows, order), species, population)) {
       survival.rows.push_back(order[i]);
       living.species[context.rows[order[i]].id] = species[i];
     }
-    survival.memory = living.written();
+    survival.memory = living.memory();
     return survival;
   }
 
  private:
   /// The memory: the species of individuals by their ids, and the number of the next new species.
   struct Known {
-    explicit Known(std::span<const std::byte> memory) {
-      if (memory.empty()) return;
-      evodevo::MemoryReader reader(memory);
-      next = reader.read<std::uint32_t>();
-      const auto ids = reader.read_list<std::uint32_t>(), numbers = reader.read_list<std::uint32_t>();
-      reader.finish();
-      if (ids.size() != numbers.size())
-        reader.fail("has the species of " + std::to_string(numbers.size()) + " individuals; expected " +
-                    std::to_string(ids.size()));
-      for (std::size_t i = 0; i < ids.size(); ++i) species[ids[i]] = numbers[i];
+    static Known in(const evodevo::SelectionMemory& memory) {
+      Known known;
+      if (memory.empty()) return known;
+      const Numbers next = whole_numbers(memory, "next"), ids = whole_numbers(memory, "ids"),
+                    numbers = whole_numbers(memory, "species");
+      if (next.size() != 1 || ids.size() != numbers.size())
+        evodevo::SelectionMemory::fail("has the species of " + std::to_string(numbers.size()) + " individuals and " +
+                                       std::to_string(next.size()) + " next ones; expected " +
+                                       std::to_string(ids.size()) + " and 1");
+      known.next = next.front();
+      for (std::size_t i = 0; i < ids.size(); ++i) known.species[ids[i]] = numbers[i];
+      return known;
     }
-    std::vector<std::byte> written() const {
+    evodevo::SelectionMemory memory() const {
       Numbers ids, numbers;
       for (const auto& [id, number] : species) ids.push_back(id), numbers.push_back(number);
-      evodevo::MemoryWriter writer;
-      writer.write(next);
-      writer.write(ids);
-      writer.write(numbers);
-      return writer.bytes();
+      return {.lists = {{"ids", evodevo::memory_list(ids)},
+                        {"species", evodevo::memory_list(numbers)},
+                        {"next", {static_cast<double>(next)}}}};
     }
     /// Returns the species of an individual, or 0, which is none, if it is not known.
     std::uint32_t species_of(const Candidate& row) const {
@@ -107,7 +106,7 @@ class SpeciesSelection final : public evodevo::Selection {
       return found == species.end() ? 0 : found->second;
     }
 
-    std::map<std::uint32_t, std::uint32_t> species;
+    std::map<std::uint32_t, std::uint32_t> species = {};
     std::uint32_t next = 1;
   };
 

@@ -11,11 +11,9 @@ class TournamentParents final : public evodevo::Selection {
     p.integer(size_, "size", {1, 1000, "1"}, "Number of individuals drawn for each parent, of which the best breeds.");
   }
 
-  evodevo::Traits traits() const override { return {.chooses_survivors = false}; }
-
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const evodevo::Candidate> rows,
-                                                               std::uint32_t count, evodevo::Rng& rng) const override {
-    return draw_pairs(rows, count, rng, evodevo::Tournament{size_});
+  std::vector<evodevo::Couple> parents(const evodevo::SelectionContext& context, std::uint32_t count,
+                                       evodevo::Rng& rng) const override {
+    return draw_pairs(context.rows, count, rng, evodevo::Tournament{size_});
   }
 
  private:

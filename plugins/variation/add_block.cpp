@@ -8,7 +8,8 @@ namespace {
 /// their types. A type without blocks whose blocks refer to a type without blocks gets none.
 class AddBlock final : public evodevo::Mutation {
  public:
-  void mutate(evodevo::Genome& genome, const evodevo::Layout& layout, evodevo::Rng& rng) const override {
+  void mutate(evodevo::Genome& genome, const evodevo::VariationContext& context, evodevo::Rng& rng) const override {
+    const evodevo::Layout& layout = context.layout;
     std::vector<std::uint32_t> types;
     for (std::uint32_t type = 0; type < layout.types.size(); ++type)
       if (count_blocks(genome, layout, type) < layout.types[type].most && has_targets(genome, layout, type))

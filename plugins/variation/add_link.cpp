@@ -14,7 +14,8 @@ class AddLink final : public evodevo::Mutation {
     p.integer(attempts_, "attempts", {1, 1000, "1"}, "Random pairs of nodes that are tried.");
   }
 
-  void mutate(evodevo::Genome& genome, const evodevo::Layout& layout, evodevo::Rng& rng) const override {
+  void mutate(evodevo::Genome& genome, const evodevo::VariationContext& context, evodevo::Rng& rng) const override {
+    const evodevo::Layout& layout = context.layout;
     const auto types = evodevo::neat::types_in(layout);
     if (!types || count_blocks(genome, layout, types->link) >= layout.types[types->link].most) return;
     const std::uint32_t section = layout.types[types->node].section, begin = layout.section_begin(genome, section);

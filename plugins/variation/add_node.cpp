@@ -12,7 +12,8 @@ class AddNode final : public evodevo::Mutation {
  public:
   evodevo::Traits traits() const override { return {.block_types = {"node", "link"}}; }
 
-  void mutate(evodevo::Genome& genome, const evodevo::Layout& layout, evodevo::Rng& rng) const override {
+  void mutate(evodevo::Genome& genome, const evodevo::VariationContext& context, evodevo::Rng& rng) const override {
+    const evodevo::Layout& layout = context.layout;
     const auto types = evodevo::neat::types_in(layout);
     if (!types || !has_room(genome, layout, *types)) return;
     std::vector<std::uint32_t> whole;  // links that are on and have not been split

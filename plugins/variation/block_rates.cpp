@@ -36,7 +36,8 @@ class BlockRates final : public evodevo::Mutation {
     return rates;
   }
 
-  void mutate(evodevo::Genome& genome, const evodevo::Layout& layout, evodevo::Rng& rng) const override {
+  void mutate(evodevo::Genome& genome, const evodevo::VariationContext& context, evodevo::Rng& rng) const override {
+    const evodevo::Layout& layout = context.layout;
     const std::span<float> rates = layout.own_genes(genome);
     change_rates(rates, rng);
     const std::vector<std::uint8_t> varied = drawn_positions(genome, layout, rng);

@@ -7,11 +7,11 @@ namespace {
 /// Adds a copy of a random block, with an id of its own. References of the copy go where those of the original go.
 class DuplicateBlock final : public evodevo::Mutation {
  public:
-  void mutate(evodevo::Genome& genome, const evodevo::Layout& layout, evodevo::Rng& rng) const override {
-    const auto block = random_item(growable_blocks(genome, layout), rng);
+  void mutate(evodevo::Genome& genome, const evodevo::VariationContext& context, evodevo::Rng& rng) const override {
+    const auto block = random_item(growable_blocks(genome, context.layout), rng);
     if (!block) return;
     const evodevo::Block original = genome.blocks[*block];
-    add_block(genome, layout, original.type, std::span(genome.genes).subspan(original.first, original.count),
+    add_block(genome, context.layout, original.type, std::span(genome.genes).subspan(original.first, original.count),
               evodevo::fresh_id(rng));
   }
 };

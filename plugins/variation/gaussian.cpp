@@ -27,7 +27,8 @@ class Gaussian final : public evodevo::Mutation {
     return {static_cast<float>(std::log(sigma_))};
   }
 
-  void mutate(evodevo::Genome& genome, const evodevo::Layout& layout, evodevo::Rng& rng) const override {
+  void mutate(evodevo::Genome& genome, const evodevo::VariationContext& context, evodevo::Rng& rng) const override {
+    const evodevo::Layout& layout = context.layout;
     float& log_sigma = layout.own_genes(genome)[0];
     log_sigma = std::clamp(log_sigma + static_cast<float>(learning_rate_ * rng.normal()), smallest, largest);
     const double sigma = std::exp(double{log_sigma});

@@ -9,7 +9,8 @@ namespace {
 /// another block.
 class RemoveBlock final : public evodevo::Mutation {
  public:
-  void mutate(evodevo::Genome& genome, const evodevo::Layout& layout, evodevo::Rng& rng) const override {
+  void mutate(evodevo::Genome& genome, const evodevo::VariationContext& context, evodevo::Rng& rng) const override {
+    const evodevo::Layout& layout = context.layout;
     if (layout.is_fixed()) return;
     std::vector<std::uint32_t> order(genome.blocks.size());
     std::iota(order.begin(), order.end(), 0u);

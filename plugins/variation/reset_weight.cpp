@@ -13,14 +13,14 @@ class ResetWeight final : public evodevo::Mutation {
     p.integer(genes_, "genes", {1, 1'000'000, "1"}, "Number of different genes that get new random values.");
   }
 
-  void mutate(evodevo::Genome& genome, const evodevo::Layout& layout, evodevo::Rng& rng) const override {
+  void mutate(evodevo::Genome& genome, const evodevo::VariationContext& context, evodevo::Rng& rng) const override {
     const std::size_t count = std::min(genome.size(), static_cast<std::size_t>(genes_));
     std::vector<std::uint32_t> left(genome.size());
     std::iota(left.begin(), left.end(), 0u);
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint32_t drawn = rng.below(static_cast<std::uint32_t>(left.size()));
       const std::uint32_t gene = left[drawn];
-      genome[gene] = other_value(genome, layout, gene, rng);
+      genome[gene] = other_value(genome, context.layout, gene, rng);
       left[drawn] = left.back();
       left.pop_back();
     }

@@ -14,8 +14,9 @@ class Sbx final : public evodevo::Crossover {
     p.real(index_, "index", {0, 1000, "1"}, "Distribution index eta; the larger, the closer children are to parents.");
   }
 
-  evodevo::Genome cross(const evodevo::Parents& parents, const evodevo::Layout& layout,
+  evodevo::Genome cross(const evodevo::Parents& parents, const evodevo::VariationContext& context,
                         evodevo::Rng& rng) const override {
+    const evodevo::Layout& layout = context.layout;
     evodevo::Genome child = parents.first;
     const auto partners = homologous(child, parents.second, layout);
     const std::vector<evodevo::Block>&mine = layout.blocks(child), &theirs = layout.blocks(parents.second);

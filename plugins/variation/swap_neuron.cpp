@@ -7,13 +7,13 @@ namespace {
 /// neural network, a block consists of the bias and the input weights of one neuron.
 class SwapNeuron final : public evodevo::Crossover {
  public:
-  evodevo::Genome cross(const evodevo::Parents& parents, const evodevo::Layout& layout,
+  evodevo::Genome cross(const evodevo::Parents& parents, const evodevo::VariationContext& context,
                         evodevo::Rng& rng) const override {
     evodevo::Genome child = parents.first;
-    const auto partners = homologous(child, parents.second, layout);
+    const auto partners = homologous(child, parents.second, context.layout);
     if (partners.empty()) return child;
     const std::uint32_t block = rng.below(static_cast<std::uint32_t>(partners.size()));
-    if (partners[block]) copy_genes(child, block, parents.second, *partners[block], layout);
+    if (partners[block]) copy_genes(child, block, parents.second, *partners[block], context.layout);
     return child;
   }
 };

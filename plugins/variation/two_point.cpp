@@ -7,8 +7,9 @@ namespace {
 /// the second parent that have the same ids. A cut may also lie before the first gene or after the last one.
 class TwoPoint final : public evodevo::Crossover {
  public:
-  evodevo::Genome cross(const evodevo::Parents& parents, const evodevo::Layout& layout,
+  evodevo::Genome cross(const evodevo::Parents& parents, const evodevo::VariationContext& context,
                         evodevo::Rng& rng) const override {
+    const evodevo::Layout& layout = context.layout;
     evodevo::Genome child = parents.first;
     if (child.empty()) return child;
     const auto genes = static_cast<std::uint32_t>(child.size());

@@ -12,8 +12,9 @@ class Uniform final : public evodevo::Crossover {
     p.real(share_, "share", {0, 1, "1"}, "Probability that a gene comes from the worse of the two parents.");
   }
 
-  evodevo::Genome cross(const evodevo::Parents& parents, const evodevo::Layout& layout,
+  evodevo::Genome cross(const evodevo::Parents& parents, const evodevo::VariationContext& context,
                         evodevo::Rng& rng) const override {
+    const evodevo::Layout& layout = context.layout;
     evodevo::Genome child = parents.better();
     const auto partners = homologous(child, parents.other(), layout);
     for (std::uint32_t block = 0; block < partners.size(); ++block)

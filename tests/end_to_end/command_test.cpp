@@ -245,16 +245,17 @@ TEST_F(Command, LifeTellsWhyMassesGoAndHowFarSpringsGrow) {
   for (const char* line :
        {"cycle 1  mass-turnover: mass [0-9]+ gone, degree [0-9]+ springs\n",
         "cycle 1  mass-turnover: mass 12 come, skip-shift -?[0-9]+ points at ",
-        "cycle 1  ballistic-growth: springs .*from 0 to 0.5 ", "cycle 2  ballistic-growth: springs .*from 0.5 to 1 "})
+        "cycle 1  ballistic-growth: .*from 0 to 0.5 .*\"growth\"", "cycle 2  ballistic-growth: .*from 0.5 to 1 "})
     EXPECT_THAT(life, ContainsRegex(line));
   const std::string summary = said({"life", folder_});
   for (const char* line : {"cycle 1  mass-turnover: 1 mass gone \\(degree [0-9]+ springs\\), .*1 mass come ",
-                           "cycle 2  ballistic-growth: springs .*from 0.5 to 1 "})
+                           "cycle 2  ballistic-growth: .*from 0.5 to 1 .*\"growth\""})
     EXPECT_THAT(summary, ContainsRegex(line));
   int masses_gone = 0, growth = 0;
   const auto json = nlohmann::json::parse(said({"life", folder_, "--json"}));
   for (const auto& edit : json.at("edits")) {
-    if (edit.at("event") == "growth") {
+    if (edit.at("event") == "scaled") {
+      EXPECT_EQ(edit.at("by"), "growth");
       EXPECT_EQ(edit.at("from"), growth++ * 0.5);
       EXPECT_EQ(edit.at("to"), growth * 0.5);
       EXPECT_FALSE(edit.contains("mass") || edit.contains("spring"));

@@ -131,6 +131,8 @@ TEST_F(Misbehaviour, WhatNoRunCanBeMadeWithIsRefused) {
            {"fitness.0", "twin-scores", "already a score \"one\""},
            {"selection", "nameless-note", "notes()"},
            {"selection", "twin-notes", "\"age\""},
+           {"selection", "nameless-list", "memory()"},
+           {"selection", "twin-lists", "\"age\""},
            {"encoding", "throw-in-layout", "std::exception"},
            {"development.operator.0", "throw-when-asked", "std::exception"}})
     EXPECT_THAT(refusal(table, how), naming(table + ".name = \"misbehaves\": ", reason)) << how;
@@ -144,9 +146,9 @@ TEST_F(Misbehaviour, WhatEndsARunIsNamed) {
   };
   for (const auto& [table, how, place, reason] : std::vector<Case>{
            {"fitness.0", "one-score-too-many", named("fitness") + ", individual ", "2 scores, and objectives() has 1"},
-           {"selection", "no-parents", named("selection"), "Traits::chooses_parents"},
+           {"selection", "no-parents", named("selection"), "override parents()"},
            {"selection", "too-few-parents", named("selection"), "4 pairs of parents, expected 5"},
-           {"selection", "no-survivors", named("selection"), "Traits::chooses_survivors"},
+           {"selection", "no-survivors", named("selection"), "override survivors()"},
            {"encoding", "twin", named("encoding") + ", individual ", "joined already"}})
     EXPECT_THAT(output(command(table, how), 1), naming(place, reason)) << how;
 }

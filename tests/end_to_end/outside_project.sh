@@ -38,10 +38,23 @@ conform() { # LIBRARY [EXPERIMENT]
   local allowed='skipped .* (it has no parameters|its traits say that it is not elitist|its traits say nothing of locality)'
   if grep -vE "^(passed |$allowed|[0-9]+ passed, [0-9]+ skipped, 0 failed)" verdicts; then fail "a case was skipped"; fi
 }
-for library in limbs adaptive-reset plan callus scores; do conform "$library" experiment.toml; done
+for library in limbs adaptive-reset graft plan callus scores; do conform "$library" experiment.toml; done
 conform novelty
 conform cross-entropy cross_entropy.toml
+conform cooling cooling.toml
 for experiment in *.toml; do evodevo check "$experiment"; done
+
+# an operator of an older interface is refused by the compiler with a sentence that says what to write instead
+sed 's/const evodevo::VariationContext& context/const evodevo::Layout\& layout/; s/context\.layout/layout/
+     s/const evodevo::Layout& layout = layout;//; s/ override//' graft.cpp >old.cpp
+cmp -s graft.cpp old.cpp && fail "the older interface is that of today"
+old() { "${CXX:-c++}" -std=c++20 -fsyntax-only -I "$scratch/package/include" \
+  -DEVODEVO_PLUGIN_VERSION='"1"' -DEVODEVO_PLUGIN_LICENSE='"MIT"' "$1" 2>message; }
+old graft.cpp || fail "the compiler takes nothing: $(<message)"
+old old.cpp && fail "an operator that gets a Layout is accepted"
+grep -q 'static.* fail.*evodevo: since ABI epoch.*VariationContext in place of the Layout.*context\.layout' message ||
+  fail "the compiler does not say what to write: $(<message)"
+if grep -q 'lacks a function' message; then fail "the compiler gives two reasons: $(<message)"; fi
 
 # a bad data file is refused by its name and line
 cp plan.txt good.txt
@@ -87,6 +100,26 @@ sizes=$(awk '/"individual":/ { if (n) print n; n = 0 } /"type": "branch"/ { ++n 
 ((${sizes%%$'\n'*} < 12 && ${sizes##*$'\n'} > 12)) || fail "genomes do not differ in length: $sizes"
 (($(grep -o '"ln(rate)": [-0-9.e]*' straight.json | sort -u | wc -l) > 10)) || fail "the rate does not evolve"
 
+# a child by graft alone is its parent with blocks of the mate: the same values, and references to the same blocks
+python3 - <<'END' || fail "a graft is not what the mate has"
+import json, sqlite3
+run = sqlite3.connect("straight/run.sqlite")
+decoder, text, blocks = json.JSONDecoder(), open("straight.json").read(), {}
+while text := text.lstrip():
+    one, end = decoder.raw_decode(text)
+    blocks[one["individual"]] = {block["id"]: block["genes"] for section in one["sections"]
+                                 if section["owner"] == "outside.limbs" for block in section["blocks"]}
+    text = text[end:]
+assert all(isinstance(genes["material"], str) for of_one in blocks.values() for genes in of_one.values())
+grafted = 0
+for child, parent, mate in run.execute("SELECT id, parent, mate FROM individuals WHERE made_by = 'outside.graft'"):
+    assert blocks[child].items() >= blocks[parent].items(), child
+    new = blocks[child].keys() - blocks[parent].keys()
+    assert all(blocks[child][one] == blocks[mate][one] for one in new), child
+    grafted += len(new)
+assert grafted > 3, grafted
+END
+
 # the plan has been carried out, and what is recorded can be simulated again
 removed=$(evodevo life elsewhere/moved --all | grep -c 'outside.plan: spring ') || fail "the plan has removed nothing"
 ((removed <= 5)) || fail "the plan has removed $removed springs"
@@ -111,6 +144,20 @@ grep -q '"leap": ' moved.txt || fail "nobody leaps"
 grep -q 'constraint overweight: .* kg above 0' moved.txt || fail "nobody was too heavy"
 
 evodevo genes elsewhere/moved
+
+# the largest step of each generation is that of its number
+evodevo run cooling.toml --out cooled >log
+python3 - <<'END' || fail "the steps do not follow the generations"
+import array, sqlite3
+run = sqlite3.connect("cooled/run.sqlite")
+genes = {one: array.array("f", blob) for one, blob in run.execute("SELECT id, genes FROM individuals")}
+largest = {}  # step of each generation, relative to the range of a gene, which is 2
+for child, parent, born in run.execute("SELECT id, parent, born FROM individuals WHERE made_by = 'outside.cooling'"):
+    step = max(abs(a - b) for a, b in zip(genes[child], genes[parent], strict=True)) / 2
+    largest[born] = max(step, largest.get(born, 0))
+assert sorted(largest) == list(range(1, 7)), largest
+assert all(0.95 < step / (0.2 / 2 ** born) < 1 + 1e-5 for born, step in largest.items()), largest
+END
 
 # what a selection operator remembers and notes survives, to the bit
 contents() {

@@ -1,4 +1,7 @@
-// What a selection operator remembers, as the archive of a run holds it: after the operator, as a number, the bytes.
+// What a selection operator remembers, as the archive of a run holds it: after the operator, as a number, how many
+// numbers each of its lists gets but the last, which gets the rest.
+#include <cmath>
+#include <cstring>
 #include <set>
 
 #include "base/philox.hpp"
@@ -67,15 +70,34 @@ const std::vector<Selecting>& cases() {
 }
 
 /// Lets the operator choose survivors, and returns what it remembers then.
-std::vector<std::byte> remembered(const Selecting& one, std::span<const std::byte> memory) {
+SelectionMemory remembered(const Selecting& one, const SelectionMemory& memory) {
   const SelectionTable table(one.individuals, one.experiment, 1, memory);
   Rng rng(philox, {1, 1, 0, 0});
-  Survival survival = one.experiment.selection->survive(table.context(), survivors, rng);
+  Survival survival = one.experiment.selection->survivors(table.context(), survivors, rng);
   const std::set<std::uint32_t> rows(survival.rows.begin(), survival.rows.end());
   require(!rows.empty() && rows.size() == survival.rows.size() && rows.size() <= survivors &&
               *rows.rbegin() < one.individuals.size(),
           "a selection operator chooses survivors that there are not");
-  return std::move(survival.memory);
+  return survival.memory.value_or(memory);
+}
+
+/// Returns a memory with these lists, whose numbers are finite.
+SelectionMemory memory_in(Input& input, const std::vector<std::string>& names) {
+  SelectionMemory memory;
+  std::vector<std::size_t> sizes;
+  for (std::size_t i = 1; i < names.size(); ++i) sizes.push_back(input.below(16));
+  const std::string_view bytes = input.rest();
+  std::vector<double> numbers(bytes.size() / sizeof(double));
+  if (!numbers.empty()) std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(double));
+  std::erase_if(numbers, [](double number) { return !std::isfinite(number); });
+  auto next = numbers.begin();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto left = static_cast<std::size_t>(numbers.end() - next);
+    const auto end = next + static_cast<std::ptrdiff_t>(i < sizes.size() ? std::min(sizes[i], left) : left);
+    memory.lists[names[i]].assign(next, end);
+    next = end;
+  }
+  return memory;
 }
 
 }  // namespace
@@ -83,10 +105,11 @@ std::vector<std::byte> remembered(const Selecting& one, std::span<const std::byt
 void fuzz(std::string_view bytes) {
   Input input(bytes);
   const Selecting& one = cases()[input.below(cases().size())];
-  const auto memory = std::as_bytes(std::span(input.rest()));
-  std::vector<std::byte> next;
+  const SelectionMemory memory = memory_in(input, one.experiment.selection->memory());
+  SelectionMemory next;
   try {
-    breed(one.experiment, one.individuals, 1, 2 * survivors, survivors, memory);
+    Remembered given{.memory = {.survivors = memory, .parents = {}}, .notes = {}};
+    breed(one.experiment, one.individuals, 1, 2 * survivors, survivors, &given);
     next = remembered(one, memory);
   } catch (const std::runtime_error&) {  // it is refused
     return;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -33,10 +34,29 @@ Blueprint row(const std::vector<std::pair<double, std::int32_t>>& masses, std::u
   return blueprint;
 }
 
-/// Returns what check_blueprint() says of a blueprint for an encoding whose context has the materials of row().
-std::string fault_of(const Blueprint& blueprint) {
+/// Returns what check_blueprint() says of a blueprint for an encoding whose context has the materials of row(), and
+/// which declares these names of what springs remember.
+std::string fault_of(const Blueprint& blueprint, const std::vector<std::string>& names = {}) {
   const EncodingContext context{.materials = row({}, 0).body.materials};
-  return testing::refusal<std::invalid_argument>([&] { check_blueprint(blueprint, context); });
+  return testing::refusal<std::invalid_argument>([&] { check_blueprint(blueprint, context, names); });
+}
+
+/// An encoding that completes blueprints as a test says. Springs may remember their growth and their turns.
+struct Completing final : Encoding {
+  std::function<void(Blueprint&)> then;
+
+  explicit Completing(std::function<void(Blueprint&)> what) : then(std::move(what)) {}
+  Layout layout(const EncodingContext&) const override { return {}; }
+  Blueprint decode(const Genome&, const Layout&, const EncodingContext&) const override { return {}; }
+  void joined(Blueprint& blueprint) const override { then(blueprint); }
+  std::vector<std::string> spring_memory() const override { return {"growth", "turn"}; }
+};
+
+/// The body of a blueprint, which an encoding completes as a test says.
+BuiltBody completed(Blueprint blueprint, const std::function<void(Blueprint&)>& then) {
+  const Completing encoding(then);
+  const EncodingContext context{.materials = row({}, 0).body.materials};
+  return build_body(std::move(blueprint), [&](std::size_t, Blueprint& joined) { complete(encoding, context, joined); });
 }
 
 constexpr double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
@@ -108,26 +128,103 @@ TEST(BodyBuilding, NeighboursAreThoseOfThePlacesToPairAt) {
   EXPECT_THAT(build_body(blueprint).failure, testing::at_place("no body: ", "pair", "not finite"));
 }
 
-TEST(BodyBuilding, SpringsToNeighboursHaveTheMeanSizeOfTheirMasses) {
-  Blueprint blueprint = row({{0, 0}, {1, 0}, {3, 0}}, 1);
-  blueprint.body.springs = {{0, 2, 5, 0}};
-  blueprint.sizes = {{1.5, 0.5}, {0.5, 1.0}, {0.75, 1.25}};
-  const BuiltBody built = build_body(blueprint);
-  ASSERT_EQ(built.body.springs.size(), 3u);
-  const auto expect_length = [&](std::size_t spring, double start, double end) {
-    EXPECT_DOUBLE_EQ(built.body.springs[spring].rest_length, start);
-    EXPECT_FLOAT_EQ(built.body.springs[spring].growth, static_cast<float>(end / start));
+TEST(BodyBuilding, TheEncodingCompletesWhatIsJoinedAndMemoryFollowsTheSpringsThatStay) {
+  // two pieces, of five and of three masses, in each of which masses of air are neighbours
+  Blueprint blueprint = row({{0, 0}, {1, 1}, {60, 0}, {2, 1}, {3, 1}, {61, 1}, {99, 1}, {4, 0}}, 2);
+  blueprint.body.springs = {{2, 5, 0.3, 0}, {7, 0, 0.7, 0}, {6, 5, 0.4, 1}};  // of the encoding itself
+  /// An awkward number that tells a spring apart by its masses in the blueprint.
+  const auto sign = [](std::uint32_t a, std::uint32_t b) {
+    return (100.0 * std::min(a, b) + std::max(a, b)) / 7 + 0.1;
   };
-  expect_length(0, 5, 5);  // a spring that the encoding itself made keeps its rest length
-  expect_length(1, 1.0 * 1, 0.75 * 1);
-  expect_length(2, 0.625 * 2, 1.125 * 2);
-  EXPECT_EQ(norm(built.body.masses[2].rest - built.body.masses[1].rest), 2) << "rest places stay";
-
-  for (const double bad : {0.0, -1.0, nan, infinity})
-    for (const Size& size : {Size{1, bad}, Size{bad, 1}}) {
-      blueprint.sizes[1] = size;
-      EXPECT_THAT(build_body(blueprint).failure, testing::at_place("no body: ", "size", "not finite", "not above 0"));
+  for (const Spring& spring : blueprint.body.springs) {
+    blueprint.spring_memory["growth"].push_back(-sign(spring.a, spring.b));
+    blueprint.spring_memory["turn"].push_back(1 / sign(spring.a, spring.b));
+  }
+  EXPECT_EQ(fault_of(blueprint, {"turn", "growth"}), "no refusal");
+  std::size_t all = 0;
+  const BuiltBody built = completed(blueprint, [&](Blueprint& joined) {
+    std::vector<Spring>& springs = joined.body.springs;
+    all = springs.size();
+    for (std::size_t s = 3; s < all; ++s) {
+      const Vec3 way = joined.body.masses[springs[s].a].rest - joined.body.masses[springs[s].b].rest;
+      EXPECT_EQ(springs[s].rest_length, norm(way)) << "at first, the distance";
+      springs[s].rest_length = sign(springs[s].a, springs[s].b);
+      joined.spring_memory["growth"].push_back(-sign(springs[s].a, springs[s].b));
+      joined.spring_memory["turn"].push_back(1 / sign(springs[s].a, springs[s].b));
     }
+  });
+  ASSERT_EQ(built.failure, "");
+  EXPECT_THAT(built.kept, ElementsAre(0, 1, 3, 4, 7));
+  const std::vector<Spring>& springs = built.body.springs;
+  ASSERT_GT(springs.size(), 4u);
+  EXPECT_GT(all, springs.size() + 4) << "several are of air, and several belong to the other piece";
+  ASSERT_EQ(built.spring_memory.at("growth").size(), springs.size());
+  ASSERT_EQ(built.spring_memory.at("turn").size(), springs.size());
+  for (std::size_t s = 0; s < springs.size(); ++s) {
+    const double own = sign(built.kept[springs[s].a], built.kept[springs[s].b]);
+    EXPECT_EQ(built.spring_memory.at("growth")[s], -own) << s;
+    EXPECT_EQ(built.spring_memory.at("turn")[s], 1 / own) << s;
+    EXPECT_EQ(springs[s].rest_length, s == 0 ? 0.7 : own) << s;
+    EXPECT_EQ(springs[s].first_length, springs[s].rest_length) << s;
+  }
+
+  EXPECT_THAT(completed(blueprint, [](Blueprint& joined) { joined.failure = "too long"; }).failure,
+              testing::at_place("no body: ", "too long"));
+  blueprint.neighbours = 0;
+  completed(blueprint, [](Blueprint&) { ADD_FAILURE() << "nothing has been joined"; });
+}
+
+TEST(BodyBuilding, FaultsOfWhatTheEncodingCompletesAreNamed) {
+  const Blueprint three = row({{0, 0}, {1, 0}, {3, 0}}, 1);  // two springs
+  const auto fault = [&](const std::function<void(Blueprint&)>& then) {
+    return testing::refusal<std::invalid_argument>([&] { completed(three, then); });
+  };
+  const auto remembering = [&](const std::string& name, const std::vector<double>& numbers) {
+    Blueprint own = three;  // the same, from decode()
+    own.neighbours = 0;
+    own.body.springs = {{0, 1, 1, 0}, {1, 2, 2, 0}};
+    own.spring_memory[name] = numbers;
+    const std::string of_decode = fault_of(own, {"growth", "turn"});
+    EXPECT_EQ(fault([&](Blueprint& joined) { joined.spring_memory[name] = numbers; }), of_decode);
+    return of_decode;
+  };
+  EXPECT_EQ(remembering("turn", {0.5, -3}), "no refusal");
+  EXPECT_THAT(remembering("turn", {0.5}), testing::naming("spring_memory[\"turn\"]", "1 numbers", "2 springs"));
+  EXPECT_THAT(remembering("growth", {1, 2, 3}), testing::naming("spring_memory[\"growth\"]", "3 numbers", "2 springs"));
+  EXPECT_THAT(remembering("growth", {0, nan}),
+              testing::naming("spring_memory[\"growth\"]", "spring 1", "not a number", "finite"));
+  EXPECT_THAT(remembering("growth", {-infinity, 0}),
+              testing::naming("spring_memory[\"growth\"]", "spring 0", "-infinity", "finite"));
+  EXPECT_THAT(remembering("colour", {1, 2}),
+              testing::naming("spring_memory[\"colour\"]", "not declared", "Encoding::spring_memory()"));
+
+  EXPECT_EQ(fault([](Blueprint&) {}), "no refusal");
+  EXPECT_THAT(fault([](Blueprint& joined) {
+                joined.body.springs.push_back({0, 2, 1, 0});
+              }),
+              testing::naming("joined()", "3 springs", "3 and 2"));
+  EXPECT_THAT(fault([](Blueprint& joined) { joined.body.springs.pop_back(); }),
+              testing::naming("joined()", "1 springs", "3 and 2"));
+  EXPECT_THAT(fault([](Blueprint& joined) { joined.body.masses.push_back(joined.body.masses[0]); }),
+              testing::naming("joined()", "4 masses", "3 and 2"));
+  for (const double length : {-0.1, nan, infinity})
+    EXPECT_THAT(fault([&](Blueprint& joined) { joined.body.springs[1].rest_length = length; }),
+                testing::at_place("spring 1 ", "rest length"));
+  EXPECT_THAT(fault([](Blueprint& joined) { joined.body.springs[1].material = 99; }),
+              testing::at_place("spring 1 ", "material 99"));
+  EXPECT_THAT(fault([](Blueprint& joined) { joined.body.masses[2].mass = nan; }), testing::at_place("mass 2 ", "kg"));
+  EXPECT_THAT(fault([](Blueprint& joined) { joined.body.springs[1] = joined.body.springs[0]; }),
+              testing::at_place("spring 1 ", "masses 0 and 1", "joined already"));
+  EXPECT_THAT(fault([](Blueprint& joined) {
+                joined.mass_memory["stem"] = {1, 2};
+              }),
+              testing::naming("mass_memory[\"stem\"]", "2 numbers", "3 masses"));
+  EXPECT_THAT(completed(three, [](Blueprint& joined) { joined.body.masses[1].rest.x = nan; }).failure,
+              testing::at_place("no body: ", "position", "not finite"));
+  Blueprint uncompleted = row({{0, 0}, {1, 0}, {3, 0}, {9, 0}}, 1);
+  uncompleted.body.springs = {{0, 1, 1, 0}};
+  uncompleted.spring_memory["turn"] = {5};
+  EXPECT_EQ(build_body(uncompleted).spring_memory.at("turn"), (std::vector<double>{5, 0, 0}));
 }
 
 TEST(BodyBuilding, EachFaultOfABlueprintIsNamed) {
@@ -162,12 +259,8 @@ TEST(BodyBuilding, EachFaultOfABlueprintIsNamed) {
   expect(&Body::springs, &Spring::material, 3u, "spring 1 ", "material 3", "3 materials");
   for (const double value : {-0.1, infinity, nan})
     expect(&Body::springs, &Spring::rest_length, value, "spring 1 ", "rest length");
-  for (const float value : {0.0f, -0.1f, HUGE_VALF, NAN}) {
-    expect(&Body::springs, &Spring::growth, value, "spring 1 ", "growth");
+  for (const float value : {0.0f, -0.1f, HUGE_VALF, NAN})
     expect(&Body::springs, &Spring::stiffness_factor, value, "spring 1 ", "stiffness_factor");
-  }
-  for (const float value : {HUGE_VALF, NAN})
-    expect(&Body::springs, &Spring::phase_growth, value, "spring 1 ", "phase_growth");
 }
 
 TEST(BodyBuilding, ListsHoldAnEntryForEachMass) {
@@ -176,10 +269,9 @@ TEST(BodyBuilding, ListsHoldAnEntryForEachMass) {
     (blueprint.*list).resize(entries);
     return fault_of(blueprint);
   };
-  EXPECT_THAT(fault(&Blueprint::sizes, 2), testing::naming("2 ", "sizes", "3 masses"));
   EXPECT_THAT(fault(&Blueprint::paired_at, 4), testing::naming("4 ", "pair", "3 masses"));
   EXPECT_THAT(fault(&Blueprint::origins, 1), testing::naming("1 ", "origin", "3 masses"));
-  for (const std::size_t entries : {0u, 3u}) EXPECT_EQ(fault(&Blueprint::sizes, entries), "no refusal");
+  for (const std::size_t entries : {0u, 3u}) EXPECT_EQ(fault(&Blueprint::origins, entries), "no refusal");
 }
 
 TEST(BodyBuilding, NoTwoSpringsJoinOnePair) {
@@ -246,15 +338,24 @@ TEST(BodyBuilding, APopulationIsBuiltAsEachBodyAlone) {
                                     row({{0, 1}, {1, 1}, {2, 1}}, 2),
                                     row({{0, 0}, {1, 0}, {10, 0}, {10.5, 0}}, 1),
                                     row({{0, 0}, {1, 0}, {5, 0}}, 0)};
-  blueprints[0].sizes = {{1, 1.25}, {0.75, 1}, {1.25, 0.75}, {1.5, 1}};
   blueprints.back().body.springs = {{1, 2, 4, 0}};  // from the encoding
+  const auto after_joining = [](std::size_t number, Blueprint& joined) {
+    EXPECT_GT(joined.neighbours, 0u) << "there are others to complete";
+    for (Spring& spring : joined.body.springs) {
+      spring.rest_length *= 1 + 0.25 * static_cast<double>(number);
+      joined.spring_memory["growth"].push_back(spring.rest_length + static_cast<double>(number));
+    }
+  };
   for (const int threads : {1, 3}) {
     Workers workers(threads);
-    const std::vector<BuiltBody> together = build_bodies(blueprints, *make_cpu_neighbour_search(), workers);
+    const std::vector<BuiltBody> together =
+        build_bodies(blueprints, *make_cpu_neighbour_search(), workers, after_joining);
     ASSERT_EQ(together.size(), blueprints.size());
     for (std::size_t i = 0; i < blueprints.size(); ++i) {
-      const BuiltBody alone = build_body(blueprints[i]);
+      const BuiltBody alone =
+          build_body(blueprints[i], [&](std::size_t, Blueprint& joined) { after_joining(i, joined); });
       SCOPED_TRACE(i);
+      EXPECT_EQ(together[i].spring_memory, alone.spring_memory);
       EXPECT_EQ(together[i].failure, alone.failure);
       testing::expect_same_body(together[i].body, alone.body);
     }

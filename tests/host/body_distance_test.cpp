@@ -239,7 +239,10 @@ void replace_mass(Life& life, Vec3 position, std::uint32_t goes) {
   living.body.masses.erase(living.body.masses.begin() + goes);
   living.state.position.push_back(position);
   living.state.position.erase(living.state.position.begin() + goes);
-  living.numbers.apply({.removed_masses = {goes}, .new_masses = {{.position = position, .mass = 1, .identity = 9}}});
+  Edits edits(living.body);
+  edits.remove_mass(goes);
+  edits.add_mass(position, {.mass = 1, .identity = 9});
+  living.numbers.apply(edits);
 }
 
 TEST(GrowthObserver, MassesOfBirthKeepTheirRestPlacesInBodyLengthsFromTheCorner) {

@@ -97,9 +97,55 @@ TEST(Breeding, OperatorsAreDrawnWithTheirProbabilities) {
   EXPECT_EQ(share.size(), 3u);
 }
 
+/// Operators that write down what they see, and change nothing.
+struct Seen {
+  std::vector<std::uint32_t> generations;
+  std::vector<Layout> layouts;
+
+  void see(const VariationContext& context) {
+    generations.push_back(context.generation);
+    layouts.push_back(context.layout);
+  }
+};
+
+struct SeeingMutation final : Mutation {
+  explicit SeeingMutation(Seen& by) : seen(by) {}
+  void mutate(Genome&, const VariationContext& context, Rng&) const override { seen.see(context); }
+  Seen& seen;
+};
+
+struct SeeingCrossover final : Crossover {
+  explicit SeeingCrossover(Seen& by) : seen(by) {}
+  Genome cross(const Parents& parents, const VariationContext& context, Rng&) const override {
+    seen.see(context);
+    return parents.first;
+  }
+  Seen& seen;
+};
+
+TEST(Breeding, OperatorsSeeTheGenerationOfTheChildAndTheirLayout) {
+  Experiment experiment =
+      testing::small({"crossover.0.probability=1", "mutation.0.probability=1", "experiment.random_individuals=0"});
+  Seen mutation, crossover;
+  experiment.mutations[0].op = std::make_unique<SeeingMutation>(mutation);
+  experiment.crossovers[0].op = std::make_unique<SeeingCrossover>(crossover);
+  const std::vector<Individual> population = testing::scored_population(experiment, 3);
+  breed(experiment, population, 9, 100, 2);
+  const Couple couple{0, 1};
+  children_of(experiment, population, {&couple, 1}, 31, 200);
+  for (const auto& [seen, layout] :
+       {std::pair(mutation, experiment.mutations[0].layout), {crossover, experiment.crossovers[0].layout}}) {
+    // each child, as a clone of its parent, is made again 16 times
+    EXPECT_EQ(std::ranges::count(seen.generations, 9u), 2 * 17);
+    EXPECT_EQ(std::ranges::count(seen.generations, 31u), 17);
+    EXPECT_EQ(seen.generations.size(), 3u * 17);
+    for (const Layout& one : seen.layouts) ASSERT_EQ(one, layout);
+  }
+}
+
 /// A mutation that sets a gene to NaN.
 struct Poison final : Mutation {
-  void mutate(Genome& genome, const Layout&, Rng&) const override {
+  void mutate(Genome& genome, const VariationContext&, Rng&) const override {
     genome[0] = std::numeric_limits<float>::quiet_NaN();
   }
 };
@@ -167,7 +213,7 @@ TEST(Clones, AreMadeAnewWhereThereAreOtherGenomes) {
 }
 
 struct NoMutation final : Mutation {
-  void mutate(Genome&, const Layout&, Rng&) const override {}
+  void mutate(Genome&, const VariationContext&, Rng&) const override {}
 };
 
 TEST(Clones, ThatCannotBeAvoidedAreBorn) {

@@ -85,18 +85,25 @@ TEST(Configuration, DevelopmentHasSchedulesAndAControl) {
 
 TEST(Configuration, GrowthWithoutSizesWarns) {
   const std::string encoding = "name = \"voxel\"\nsize = [2, 1, 1]\nedge = 0.5";
-  const auto warnings = [&](const std::string& other, std::vector<Override> overrides = {}) {
-    return testing::read(small_with({{"name = \"spring-turnover\"\nsprings = 2", "name = \"ballistic-growth\""},
+  const auto warnings = [&](const std::string& other, std::vector<Override> overrides = {},
+                            const std::string& op = "ballistic-growth") {
+    return testing::read(small_with({{"name = \"spring-turnover\"\nsprings = 2", "name = \"" + op + "\""},
                                      {encoding, "name = \"" + other + "\""}}),
                          std::move(overrides))
         .warnings;
   };
   for (const char* name : {"voxel", "direct", "neural", "cppn"})
-    EXPECT_THAT(warnings(name),
-                ElementsAre(at_place("development.operator.0.name = \"ballistic-growth\": ", "encoding.size_range")))
+    EXPECT_THAT(warnings(name), ElementsAre(at_place("development.operator.0.name = \"ballistic-growth\": ",
+                                                     "\"growth\"", "[encoding]", "evodevo describe")))
         << name;
   for (const char* name : {"voxel", "neural", "cppn"})
     EXPECT_THAT(warnings(name, {{"encoding.size_range", "0.25", ""}}), ::testing::IsEmpty()) << name;
+  const Override sizes{"encoding.size_range", "0.25", ""}, phases{"encoding.phase_range", "1.0", ""},
+      still{"encoding.grows", "false", ""};
+  const std::string place = "development.operator.0.name = \"ballistic-phase\": ";
+  EXPECT_THAT(warnings("voxel", {sizes}, "ballistic-phase"), ElementsAre(at_place(place, "\"turn\"", "[encoding]")));
+  EXPECT_THAT(warnings("voxel", {phases}, "ballistic-phase"), ::testing::IsEmpty());
+  EXPECT_THAT(warnings("voxel", {phases, still}, "ballistic-phase"), ElementsAre(at_place(place, "\"turn\"")));
 }
 
 TEST(Configuration, DevelopmentWithoutOperatorsWarnsAndHasNoControl) {

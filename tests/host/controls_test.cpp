@@ -9,13 +9,16 @@
 #include <set>
 
 #include "base/philox.hpp"
+#include "life/edits.hpp"
 #include "support/changed.hpp"
+#include "support/edits.hpp"
 #include "support/lives.hpp"
 #include "support/told.hpp"
 
 namespace evodevo::EVODEVO_FILE {
 namespace {
 
+using testing::changing, testing::indices, testing::removing;
 using ::testing::ElementsAre;
 using testing::Told;
 
@@ -73,12 +76,23 @@ struct Ring {
 /// Edits of every kind. Springs 40 (bone) and 42 (muscle) change; removing the two masses removes seven springs as
 /// well.
 Edits some_of_everything() {
-  return {
-      .removed_springs = {0, 1, 2},
-      .removed_masses = {7, 8},
-      .changed_springs = {{.spring = 40, .rest_length = 1.0}, {.spring = 42, .material = Material{6000, 0.2, 1, 0}}},
-      .new_masses = {{{5, 5, 5}, 0.3, 1}, {{6, 6, 6}, 0.4, 0}},
-      .new_springs = {{40, 0, muscle, {}}, {41, 0, bone, 2.0}, {0, 20, muscle, {}}, {1, 20, muscle, {}}}};
+  Edits edits(40, 80);
+  for (const std::uint32_t spring : {0, 1, 2}) edits.remove_spring(spring, {.cause = 9});
+  for (const std::uint32_t mass : {7, 8}) edits.remove_mass(mass);
+  edits.change_spring(40, {.rest_length = 1.0});
+  edits.change_spring(42, {.material = Material{6000, 0.2, 1, 0}});
+  edits.join(edits.add_mass({5, 5, 5}, {.mass = 0.3, .material = 1}), 0, muscle);
+  edits.join(edits.add_mass({6, 6, 6}, {.mass = 0.4, .material = 0}), 0, bone, {.rest_length = 2.0});
+  edits.join(0, 20, muscle, {.like = 0});
+  edits.join(1, 20, muscle);
+  return edits;
+}
+
+/// Edits of a ring that add a spring of bone between opposite masses.
+Edits joining(const NewSpring& spring = {}) {
+  Edits edits(40, 80);
+  edits.join(0, 20, bone, spring);
+  return edits;
 }
 
 TEST(RandomPlaces, AsMuchChangesAsBefore) {
@@ -94,6 +108,7 @@ TEST(RandomPlaces, AsMuchChangesAsBefore) {
     EXPECT_EQ(moved.new_masses[1].material, 0);
     for (std::size_t s = 0; s < 4; ++s) EXPECT_EQ(moved.new_springs[s].material, edits.new_springs[s].material);
     EXPECT_TRUE(moved.new_springs[0].a == 40 || moved.new_springs[0].b == 40) << "new masses get their springs";
+    EXPECT_THAT(testing::all_causes(moved), ::testing::IsEmpty());
     const Body after = ring.after(moved);
     EXPECT_EQ(after.masses.size(), 40u);
     EXPECT_EQ(after.springs.size(), 80u - 10 + 4) << "those of the masses that go count";
@@ -105,11 +120,11 @@ TEST(RandomPlaces, TheMixOfMaterialsStays) {
   for (std::size_t i = 0; i < 40; ++i) ring.living.body.masses[i].material = i % 2 == 0 ? 0 : 1;
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     std::vector<int> count(2, 0);
-    for (const Spring& spring : ring.after(ring.moved({.removed_springs = {0, 1, 2, 4}}, seed)).springs)
+    for (const Spring& spring : ring.after(ring.moved(removing(ring.living.body, {0, 1, 2, 4}), seed)).springs)
       ++count.at(spring.material);
     EXPECT_EQ(count, (std::vector{37, 39})) << "three of bone go, and one of muscle";
-    for (const std::uint32_t mass : ring.moved({.removed_masses = {0, 2, 4}}, seed).removed_masses)
-      EXPECT_EQ(mass % 2, 0u);
+    for (const Removal& mass : ring.moved(removing(ring.living.body, {}, {0, 2, 4}), seed).removed_masses)
+      EXPECT_EQ(mass.index % 2, 0u);
   }
 }
 
@@ -118,7 +133,7 @@ TEST(RandomPlaces, AnyMaterialGoesWhereNoneOfItsOwnIsLeft) {
   std::size_t surplus = 0;
   const Edits moved = ring.moved({.springs_gone = Kinds(41, {muscle})}, 1, surplus);
   ASSERT_EQ(moved.removed_springs.size(), 41u);
-  const auto material = [&](std::uint32_t s) { return ring.living.body.springs[s].material; };
+  const auto material = [&](const Removal& s) { return ring.living.body.springs[s.index].material; };
   EXPECT_EQ(std::ranges::count(moved.removed_springs, 1u, material), 40) << "all of muscle";
   const Material tissue{4000, 0, 0, 0};
   EXPECT_EQ(ring.moved({.springs_gone = Kinds(2, {tissue})}, 1, surplus).removed_springs.size(), 2u);
@@ -146,12 +161,14 @@ TEST(RandomPlaces, AllPlacesAreReachedAlike) {
   double height = 0;
   constexpr int rounds = 2000;
   for (std::uint64_t seed = 0; seed < rounds; ++seed) {
-    const Edits springs = ring.moved({.removed_springs = {0, 1, 2, 3}}, seed);
-    for (const std::uint32_t s : springs.removed_springs) ++gone_springs[s];
-    const Edits masses = ring.moved({.removed_masses = {0, 1}, .new_masses = {{{}, 0.2, 0}}}, seed);
-    for (const std::uint32_t m : masses.removed_masses) ++gone_masses[m];
+    const Edits springs = ring.moved(removing(ring.living.body, {0, 1, 2, 3}), seed);
+    for (const std::uint32_t s : indices(springs.removed_springs)) ++gone_springs[s];
+    Edits turnover = removing(ring.living.body, {}, {0, 1});
+    turnover.add_mass({}, {.mass = 0.2, .material = 0});
+    const Edits masses = ring.moved(turnover, seed);
+    for (const std::uint32_t m : indices(masses.removed_masses)) ++gone_masses[m];
     height += masses.new_masses[0].position.z / rounds;
-    for (const NewSpring& spring : ring.moved({.new_springs = {{0, 20, bone, {}}}}, seed).new_springs) {
+    for (const NewSpring& spring : ring.moved(joining(), seed).new_springs) {
       ++joined[spring.a];
       ++joined[spring.b];
     }
@@ -169,7 +186,7 @@ TEST(RandomPlaces, SpringsOfTheSameMaterialChangeByTheSameFactors) {
       .spring = 3, .rest_length = 0.9 * before.rest_length, .material = Material{5000, 0.2, 1, 0}};
   std::set<std::uint32_t> reached;
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
-    const Edits moved = ring.moved({.changed_springs = {wanted}}, seed);
+    const Edits moved = ring.moved(changing(ring.living.body, {wanted}), seed);
     ASSERT_EQ(moved.changed_springs.size(), 1u);
     const ChangedSpring& change = moved.changed_springs[0];
     const Spring& other = ring.living.body.springs[change.spring];
@@ -186,25 +203,29 @@ TEST(RandomPlaces, SpringsOfTheSameKindBecomeAsStiff) {
   for (std::size_t i = 0; i < 80; ++i) ring.living.body.springs[i].stiffness_factor = i % 8 == 3 ? 4 : 2;
   std::set<std::uint32_t> reached;
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
-    const Edits moved = ring.moved({.changed_springs = {{.spring = 3, .stiffness_factor = 6}}}, seed);
+    const Edits moved = ring.moved(changing(ring.living.body, {{.spring = 3, .stiffness_factor = 6}}), seed);
     ASSERT_EQ(moved.changed_springs.size(), 1u);
     EXPECT_EQ(moved.changed_springs[0].stiffness_factor, 6);
     EXPECT_FALSE(moved.changed_springs[0].material);
     reached.insert(moved.changed_springs[0].spring);
     EXPECT_EQ(moved.changed_springs[0].spring % 8, 3u) << "of muscle, with the factor 4";
-    const Edits removed = ring.moved({.removed_springs = {3}, .new_springs = {{0, 20, bone, {}, 0.7}}}, seed);
-    EXPECT_EQ(removed.removed_springs.at(0) % 8, 3u);
+    Edits exchange = joining({.stiffness_factor = 0.7});
+    exchange.remove_spring(3);
+    const Edits removed = ring.moved(exchange, seed);
+    EXPECT_EQ(removed.removed_springs.at(0).index % 8, 3u);
     EXPECT_EQ(removed.new_springs.at(0).stiffness_factor, 0.7);
   }
   EXPECT_EQ(reached.size(), 10u);
 }
 
-TEST(RandomPlaces, GrowthHappensAsItIs) {
-  const Edits moved = Ring().moved({.growth = Growth{1, 2, 5}}, 1);
-  ASSERT_TRUE(moved.growth.has_value());
-  EXPECT_EQ(std::tuple(moved.growth->from, moved.growth->to, moved.growth->whole), std::tuple(1, 2, 5));
-  EXPECT_TRUE(moved.changed_springs.empty());
-  EXPECT_FALSE(Ring().moved(some_of_everything(), 1).growth.has_value());
+TEST(RandomPlaces, AScalingHappensAsItIs) {
+  Edits edits(40, 80);
+  edits.scale_lengths({.number = 3, .from = 1, .to = 2, .whole = 5});
+  const Edits moved = Ring().moved(edits, 1);
+  ASSERT_TRUE(only_scales(moved));
+  const Scaling& scaling = *moved.scaling;
+  EXPECT_EQ(std::tuple(scaling.number, scaling.from, scaling.to, scaling.whole), std::tuple(3u, 1, 2, 5));
+  EXPECT_FALSE(Ring().moved(some_of_everything(), 1).scaling.has_value());
 }
 
 TEST(RandomPlaces, FewerComeWhereThereIsNoRoom) {
@@ -212,7 +233,9 @@ TEST(RandomPlaces, FewerComeWhereThereIsNoRoom) {
   ring.living.body.masses.resize(3);
   ring.living.body.springs = {{0, 1, 1, 0}, {1, 2, 1, 0}};
   ring.living.stress = {1, 2};
-  EXPECT_EQ(ring.moved({.new_springs = {{0, 2, bone, {}}, {0, 2, bone, {}}}}, 1).new_springs.size(), 1u);
+  Edits twice(ring.living.body);
+  for (int i = 0; i < 2; ++i) twice.join(0, 2, bone);
+  EXPECT_EQ(ring.moved(twice, 1).new_springs.size(), 1u);
   EXPECT_TRUE(ring.moved(Edits{}, 1).empty());
 }
 
@@ -323,11 +346,12 @@ TEST(Control, OperatorsSeeTheLifeBeforeAloneAndItsCostDoesNotCount) {
 }
 
 /// In each cycle, how many springs were removed and added, and how many masses.
-std::map<std::uint32_t, std::array<std::size_t, 4>> totals(Body body, const LifeRecord& record) {
+std::map<std::uint32_t, std::array<std::size_t, 4>> totals(LivingBody living, const LifeRecord& record) {
+  const Body& body = living.body;
   std::map<std::uint32_t, std::array<std::size_t, 4>> totals;
   for (const Change& change : record.changes()) {
     const std::size_t springs = body.springs.size(), come = change.edits.new_springs.size();
-    apply(change.edits, body);
+    apply(change.edits, living, change.op);
     if (!change.op) continue;
     const std::size_t counts[] = {springs + come - body.springs.size(), come, change.edits.removed_masses.size(),
                                   change.edits.new_masses.size()};
@@ -386,7 +410,7 @@ TEST(Control, NothingMoreChangesAfterTheYokesEnd) {
   };
   Experiment experiment = with_control("random-places");
   experiment.devo[0].op =
-      std::make_unique<Told>(RecordRequest{}, [](const DevoContext&, Edits& edits) { edits.removed_springs = {4}; });
+      std::make_unique<Told>(RecordRequest{}, [](const DevoContext&, Edits& edits) { edits.remove_spring(4); });
   experiment.development.cycles = 3;
   Breaking simulator(experiment);
   const Genome genome{1, 2};

@@ -9,6 +9,7 @@
 #include "base/philox.hpp"
 #include "life/edits.hpp"
 #include "life/measurement/scenario_start.hpp"
+#include "support/edits.hpp"
 #include "support/experiments.hpp"
 #include "support/lives.hpp"
 #include "support/messages.hpp"
@@ -96,7 +97,13 @@ TEST(Identities, OfDaughtersFollowFromTheirMothersAndOfNewcomersFromTheirOperato
   Seen seen({40, 70});
   seen.daughters = {2, 0};
   const auto come = [&](std::uint64_t origin) {
-    const Edits edits{.new_masses = {{.mother = 0}, {}, {.mother = 0}, {.mother = 1}, {.identity = 5}, {}}};
+    Edits edits;
+    edits.divide(0, {});
+    edits.add_mass({});
+    edits.divide(0, {});
+    edits.divide(1, {});
+    edits.add_mass({}, {.identity = 5});
+    edits.add_mass({});
     std::vector<std::uint64_t> identities;
     for (const NewMass& mass : resolved(edits, seen.context({philox, 1, origin, true})).new_masses)
       identities.push_back(mass.identity.value());
@@ -107,7 +114,11 @@ TEST(Identities, OfDaughtersFollowFromTheirMothersAndOfNewcomersFromTheirOperato
   EXPECT_NE(come(9)[1], come(8)[1]);
 
   MassNumbers names({40, 70});
-  names.apply({.removed_masses = {1}, .new_masses = {{.mother = 0, .identity = 6}, {.mother = 1, .identity = 7}}});
+  Edits edits;
+  edits.remove_mass(1);
+  edits.divide(0, {}, {.identity = 6});
+  edits.divide(1, {}, {.identity = 7});
+  names.apply(edits);
   EXPECT_THAT(names.identities(), ElementsAre(40, 6, 7));
   EXPECT_THAT(names.daughters(), ElementsAre(1, 0, 0));
   EXPECT_THAT(names.numbers(), ElementsAre(0, 2, 3));
@@ -205,7 +216,7 @@ TEST(InheritedDraws, MoveTheSameMassesInTheSameWayWhenANoisyScenarioBegins) {
     const Evaluation evaluation(experiment, *simulator);
     const Newborn newborn{1, 0, &one.front().genome};
     Life life = std::move(evaluation.birth.of({&newborn, 1}).front());
-    if (removed > 0) apply(Edits{.removed_masses = {removed}}, life.living);
+    if (removed > 0) apply(testing::removing(life.living.body, {}, {removed}), life.living);
     // held above the ground, so that nothing but the noise moves it
     for (Vec3& position : life.living.state.position) position.z += 1;
     const std::vector<Vec3> before = life.living.state.position;

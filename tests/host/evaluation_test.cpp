@@ -34,9 +34,12 @@ Result result_of(const Experiment& experiment, float material = 1) {
   return evaluate(experiment, {{.genome = {material, material}}}).front();
 }
 
-/// Replaces the devo operator.
-void develop_by(Experiment& experiment, std::function<void(const DevoContext&, Edits&)> action) {
-  experiment.devo.at(0).op = std::make_unique<Told>(RecordRequest{}, std::move(action));
+/// Replaces the devo operator by one that remembers these numbers about springs.
+void develop_by(Experiment& experiment, std::function<void(const DevoContext&, Edits&)> action,
+                std::vector<std::string> of_springs = {}) {
+  auto told = std::make_unique<Told>(RecordRequest{}, std::move(action));
+  told->of_springs = std::move(of_springs);
+  experiment.devo.at(0).op = std::move(told);
 }
 
 /// The life that a genome develops, and what it was at birth.
@@ -45,12 +48,12 @@ struct Grown {
   Life life;
 };
 
-Grown grown(const Experiment& experiment, const Genome& genome, double growth = 0) {
+/// `growth` is what the operator remembers about each spring at birth, unless it is that of the encoding.
+Grown grown(const Experiment& experiment, const Genome& genome, std::optional<double> growth = std::nullopt) {
   const auto simulator = testing::simulator_for(experiment);
   const Evaluation evaluation(experiment, *simulator);
   std::vector<Life> lives = evaluation.birth.of(std::vector<Newborn>{{0, 0, &genome}});
-  for (Spring& spring : lives[0].living.body.springs)
-    if (growth > 0) spring.growth = static_cast<float>(growth);
+  if (growth) std::ranges::fill(lives[0].living.memory.at(0).springs.values, *growth);
   LivingBody newborn = lives[0].living;
   evaluation.development.run(lives, unwatched);
   EXPECT_TRUE(lives[0].alive()) << lives[0].result.reason;
@@ -168,7 +171,7 @@ void stiffen(const DevoContext& context, Edits& edits) {
   for (std::uint32_t i = 0; i < context.body.springs.size(); ++i) {
     Material material = context.body.materials[context.body.springs[i].material];
     material.stiffness *= 1000;
-    edits.changed_springs.push_back({.spring = i, .material = material});
+    edits.change_spring(i, {.material = material});
   }
 }
 
@@ -214,15 +217,16 @@ TEST(Evaluation, ALoadSinksTheFasterInWater) {
 /// Makes every spring three times as long.
 void stretch(const DevoContext& context, Edits& edits) {
   for (std::uint32_t i = 0; i < context.body.springs.size(); ++i)
-    edits.changed_springs.push_back({.spring = i, .rest_length = 3 * context.body.springs[i].rest_length});
+    edits.change_spring(i, {.rest_length = 3 * context.body.springs[i].rest_length});
 }
 
 TEST(Evaluation, TheEnergyThatGrowthBringsIsAllowed) {
   Experiment experiment = testing::small({"development.cycles=1"});
   develop_by(experiment, stretch);
-  const double stretched = grown(experiment, {1, 1}, 3).life.living.state.start_energy;
-  develop_by(experiment, [](const DevoContext&, Edits& edits) { edits.growth = {0, 1}; });
-  EXPECT_NEAR(grown(experiment, {1, 1}, 3).life.living.state.start_energy, stretched, 1e-12 * stretched);
+  const double stretched = grown(experiment, {1, 1}).life.living.state.start_energy;
+  develop_by(experiment, [](const DevoContext&, Edits& edits) { edits.scale_lengths({.to = 1}); }, {"growth"});
+  EXPECT_NEAR(grown(experiment, {1, 1}, 2).life.living.state.start_energy, stretched, 1e-12 * stretched);
+  EXPECT_LT(grown(experiment, {1, 1}, 0).life.living.state.start_energy, 0.5 * stretched) << "without growth";
 }
 
 TEST(Evaluation, ABodysLengthIsThatOfTheStartOfTheWindow) {
@@ -260,18 +264,19 @@ TEST(Evaluation, BallisticSpringsHaveTheLengthsThatANetworkGivesThem) {
         const Individual individual = breed(experiment, {}, 0, 0, 1).front();
         const Blueprint blueprint = decoded(experiment, individual.genome);
         const std::vector<std::uint32_t> kept = build_body(blueprint).kept;
-        const auto expect_lengths = [&](const Body& body, double Size::*size, double tolerance) {
+        const auto expect_lengths = [&](const Body& body, const char* size, double tolerance) {
+          const std::vector<double>& sizes = blueprint.mass_memory.at(size);
           ASSERT_GT(body.springs.size(), 100u);
           for (const Spring& spring : body.springs) {
             const std::uint32_t a = kept.at(spring.a), b = kept.at(spring.b);
             const double distance = norm(blueprint.body.masses[a].rest - blueprint.body.masses[b].rest);
-            const double expected = distance * (blueprint.sizes[a].*size + blueprint.sizes[b].*size) / 2;
+            const double expected = distance * (sizes.at(a) + sizes.at(b)) / 2;
             ASSERT_NEAR(spring.rest_length, expected, tolerance);
           }
         };
         const Grown of = grown(experiment, individual.genome);
-        expect_lengths(of.newborn.body, &Size::start, 1e-12);
-        expect_lengths(of.life.living.body, &Size::end, 1e-6);
+        expect_lengths(of.newborn.body, "size at birth", 1e-12);
+        expect_lengths(of.life.living.body, "size at the end", 1e-6);
         EXPECT_EQ(cycles_of_change(of.life), cycles);
       }
 }
@@ -292,8 +297,9 @@ TEST(Evaluation, PhasesGoFromThoseAtBirthToThoseAtTheEndWhateverTheSchedule) {
       const Spring& spring = matured.springs[s];
       const Material &before = newborn.materials[newborn.springs[s].material],
                      &after = matured.materials[spring.material];
-      EXPECT_NE(spring.phase_growth, 0);
-      EXPECT_NEAR(after.phase, before.phase + spring.phase_growth, 1e-6);
+      const double turn = of.newborn.memory.at(0).springs.values.at(s);
+      EXPECT_NE(turn, 0);
+      EXPECT_NEAR(after.phase, before.phase + turn, 1e-6);
       EXPECT_NEAR(after.frequency, before.frequency, 1e-9);
     }
     EXPECT_EQ(cycles_of_change(of.life), cycles);
@@ -303,7 +309,7 @@ TEST(Evaluation, PhasesGoFromThoseAtBirthToThoseAtTheEndWhateverTheSchedule) {
 TEST(Evaluation, ABodyThatDevelopmentEmptiesIsInvalid) {
   Experiment experiment = testing::small();
   develop_by(experiment, [](const DevoContext& context, Edits& edits) {
-    for (std::uint32_t i = 0; i < context.body.springs.size(); ++i) edits.removed_springs.push_back(i);
+    for (std::uint32_t i = 0; i < context.body.springs.size(); ++i) edits.remove_spring(i);
   });
   const Result result = result_of(experiment);
   EXPECT_EQ(result.status, Status::invalid);
@@ -318,7 +324,7 @@ TEST(Evaluation, AFaultyOperatorIsNamed) {
   const auto said = [&] {
     return testing::refusal<std::runtime_error>([&] { evaluate(experiment, {{.id = 5, .genome = {1, 1}}}); });
   };
-  develop_by(experiment, [](const DevoContext&, Edits& edits) { edits.new_springs = {{0, 0, {1, 0, 0, 0}, {}}}; });
+  develop_by(experiment, [](const DevoContext&, Edits& edits) { edits.join(0, 0, Material{1, 0, 0, 0}); });
   EXPECT_THAT(said(), testing::at_place("devo operator \"spring-turnover\" of " + file_of("devo") +
                                             ", individual 5, cycle 1, seed 7: ",
                                         "masses 0 and 0", "correct the operator", "new run"));

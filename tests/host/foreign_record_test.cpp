@@ -150,8 +150,8 @@ TEST_P(ForeignTable, MayHoldAnything) {
 
 INSTANTIATE_TEST_SUITE_P(Tables, ForeignTable,
                          ::testing::Values("record", "provenances", "operators", "objectives", "sections",
-                                           "block_types", "gene_types", "first_blocks", "individuals", "scores",
-                                           "lives", "generations", "verifications"),
+                                           "block_types", "gene_types", "gene_options", "first_blocks", "individuals",
+                                           "scores", "lives", "generations", "verifications"),
                          [](const auto& instance) { return std::string(instance.param); });
 
 TEST_F(ForeignRecord, WhatDoesNotFitTogetherIsNamed) {
@@ -173,7 +173,16 @@ TEST_F(ForeignRecord, WhatDoesNotFitTogetherIsNamed) {
       {"UPDATE generations SET evaluations = 3 WHERE generation = 1", "generations.evaluations"},
       {"UPDATE individuals SET provenance = 7", "individuals.provenance"},
       {"UPDATE individuals SET origin = born + 1", "individuals.origin"},
-      {"INSERT INTO memory VALUES(0, x'00')", "memory.generation"},
+      {"INSERT INTO memory VALUES('survivors', 'ids', 0, 1, x'00')", "memory.generation"},
+      {"INSERT INTO memory SELECT 'children', 'ids', max(generation), 1, x'' FROM generations", "memory.role"},
+      {"INSERT INTO memory SELECT 'survivors', 'ids', max(generation), -1, x'' FROM generations", "memory.version"},
+      {"INSERT INTO memory SELECT 'survivors', value, max(generation), value, x'' FROM generations, (SELECT 1 AS value "
+       "UNION SELECT 2) GROUP BY value",
+       "memory.version"},
+      {"INSERT INTO memory SELECT 'survivors', 'ids', max(generation), 1, x'00' FROM generations", "memory.numbers"},
+      {"INSERT INTO memory SELECT 'survivors', 'ids', max(generation), 1, x'000000000000f07f' FROM generations",
+       "memory.numbers"},
+      {"INSERT INTO memory SELECT 'parents', 'ids', max(generation), 1, x'' FROM generations", "[selection.parents]"},
       {"INSERT INTO record VALUES('journal', 'of travels')", "\"of travels\""},
       {"INSERT INTO record VALUES('seconds', 'many')", "\"seconds\""},
       {"INSERT INTO note_titles VALUES(0, 'novelty', 'm', 0)", "novelty in m"},

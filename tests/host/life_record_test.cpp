@@ -5,11 +5,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 
 #include "evodevo/helpers/rows.hpp"
 #include "evolution/resimulation.hpp"
+#include "life/edits.hpp"
+#include "support/edits.hpp"
 #include "support/elsewhere.hpp"
 #include "support/experiments.hpp"
 #include "support/lives.hpp"
@@ -42,12 +47,21 @@ Experiment all_operators(bool reset) {
 
 auto fields(const Mass& m) { return std::tuple(m.rest, m.mass, m.material, m.air_contacts, m.payload); }
 auto fields(const Spring& s) {
-  return std::tuple(s.a, s.b, s.rest_length, s.material, s.growth, s.first_length, s.stiffness_factor);
+  return std::tuple(s.a, s.b, s.rest_length, s.material, s.first_length, s.stiffness_factor);
 }
-auto fields(const NewMass& m) { return std::tuple(m.position, m.mass, m.material, m.mother, m.identity); }
-auto fields(const NewSpring& s) { return std::tuple(s.a, s.b, s.material, s.rest_length, s.stiffness_factor); }
-auto fields(const ChangedSpring& s) { return std::tuple(s.spring, s.rest_length, s.material, s.stiffness_factor); }
-auto fields(const Growth& g) { return std::tuple(g.from, g.to, g.whole); }
+/// The cause of an edit, if it has one.
+std::optional<double> cause(double number) { return std::isnan(number) ? std::nullopt : std::optional(number); }
+auto fields(const Removal& r) { return std::tuple(r.index, cause(r.cause)); }
+auto fields(const NewMass& m) {
+  return std::tuple(m.position, m.mass, m.material, m.mother, m.identity, cause(m.cause));
+}
+auto fields(const NewSpring& s) {
+  return std::tuple(s.a, s.b, s.material, s.rest_length, s.stiffness_factor, s.like, cause(s.cause));
+}
+auto fields(const ChangedSpring& s) {
+  return std::tuple(s.spring, s.rest_length, s.material, s.stiffness_factor, cause(s.cause));
+}
+auto fields(const Scaling& s) { return std::tuple(s.number, s.from, s.to, s.whole); }
 
 template <class T>
 void expect_same(const std::vector<T>& a, const std::vector<T>& b) {
@@ -64,25 +78,25 @@ void expect_same(const Body& a, const Body& b) {
 TEST(LifeRecord, ReplayedFromTheBodyAtBirthGivesTheMaturedOneToTheBit) {
   for (const bool reset : {false, true}) {
     const Experiment experiment = all_operators(reset);
-    std::size_t alive = 0, removed_masses = 0, new_masses = 0, changed = 0, new_springs = 0, growth = 0;
+    std::size_t alive = 0, removed_masses = 0, new_masses = 0, changed = 0, new_springs = 0, scaled = 0;
     Developed developed(experiment, 6);
     for (std::size_t i = 0; i < 6; ++i) {
       const Life& life = developed.lives[i];
       if (!life.alive()) continue;
       ++alive;
-      Body& body = developed.born[i];
+      LivingBody& living = developed.born[i];
       for (const Change& change : LifeRecord(life.record.bytes()).changes()) {
-        apply(change.edits, body);
+        apply(change.edits, living, change.op);
         removed_masses += change.edits.removed_masses.size();
         new_masses += change.edits.new_masses.size();
         changed += change.edits.changed_springs.size();
         new_springs += change.edits.new_springs.size();
-        growth += change.edits.growth.has_value();
+        scaled += change.edits.scaling.has_value();
       }
-      expect_same(body, life.living.body);
+      expect_same(living.body, life.living.body);
     }
     EXPECT_GE(alive, 3u);
-    EXPECT_GT(std::min({removed_masses, new_masses, changed, new_springs, growth}), 10u)
+    EXPECT_GT(std::min({removed_masses, new_masses, changed, new_springs, scaled}), 10u)
         << "there must be something to replay";
   }
 }
@@ -92,41 +106,40 @@ Change change_of_all_kinds() {
   change.cycle = 300;
   change.op = 2;
   change.lengths_given = true;
-  change.edits.growth = {0.1, 2, 3};
-  change.edits.removed_masses = {0, 7, 100'000};
-  change.edits.removed_springs = {3, 4, 70'000};
-  change.edits.causes.removed_springs = {0, 1.5, 0x1p100};
+  change.edits.scale_lengths({.number = 5, .from = 0.1, .to = 2, .whole = 3});
+  for (const std::uint32_t mass : {0, 7, 100'000}) change.edits.remove_mass(mass);
+  change.edits.removed_springs = {{3, 0}, {4, 1.5}, {70'000, 0x1p100}};
   const Material one{5000, 0.14, 1, 0.1 + 0.2}, other{1, 0, 0, 0};
-  change.edits.changed_springs = {{.spring = 9, .rest_length = 1e-300},
-                                  {.spring = 8, .material = one},
-                                  {.spring = 7, .material = one, .stiffness_factor = 0.1 + 0.2},
-                                  {.spring = 6, .stiffness_factor = 1e300}};
-  change.edits.causes.changed_springs = {2, -3, 4, 5};
-  change.edits.new_masses = {{{-1, 0.1, 2}, 0.2, no_material, 3, 0xfffffffffffffffe}, {{0, 0, 0}, 0.3, 4, {}, 0}};
-  change.edits.new_springs = {{1, 200, one, 0.1}, {2, 0xfffffffe, other, 0.0}, {5, 6, other, 7.0, 0.1 + 0.2}};
+  change.edits.change_spring(9, {.rest_length = 1e-300, .cause = 2});
+  change.edits.change_spring(8, {.material = one, .cause = -3});
+  change.edits.change_spring(7, {.material = one, .stiffness_factor = 0.1 + 0.2});
+  change.edits.change_spring(6, {.stiffness_factor = 1e300, .cause = 5});
+  change.edits.divide(3, {-1, 0.1, 2}, {.mass = 0.2, .identity = 0xfffffffffffffffe});
+  change.edits.add_mass({0, 0, 0}, {.mass = 0.3, .material = 4, .identity = 0});
+  change.edits.join(1, 200, one, {.rest_length = 0.1, .like = 0});
+  change.edits.join(2, 0xfffffffe, other, {.rest_length = 0.0});
+  change.edits.join(5, 6, other, {.rest_length = 7.0, .stiffness_factor = 0.1 + 0.2, .like = 0xfffffffe});
+  change.edits.join(7, 6, other, {.rest_length = 7.0, .stiffness_factor = 0.1 + 0.2});
   return change;
 }
 
 void expect_same(const Change& a, const Change& b) {
   EXPECT_EQ(std::tie(a.cycle, a.op, a.lengths_given), std::tie(b.cycle, b.op, b.lengths_given));
   const Edits &one = a.edits, &other = b.edits;
-  EXPECT_EQ(fields(one.growth.value_or(Growth{-1})), fields(other.growth.value_or(Growth{-1})));
-  EXPECT_EQ(one.removed_masses, other.removed_masses);
-  EXPECT_EQ(one.removed_springs, other.removed_springs);
+  EXPECT_EQ(fields(one.scaling.value_or(Scaling{.from = -1})), fields(other.scaling.value_or(Scaling{.from = -1})));
+  expect_same(one.removed_masses, other.removed_masses);
+  expect_same(one.removed_springs, other.removed_springs);
   expect_same(one.changed_springs, other.changed_springs);
   expect_same(one.new_masses, other.new_masses);
   expect_same(one.new_springs, other.new_springs);
-  for (const auto list : Causes::lists) EXPECT_EQ(one.causes.*list, other.causes.*list);
 }
 
 TEST(LifeRecord, GivesBackWhatItWasGivenAndRefusesADamagedOne) {
-  const Change torn_off{.cycle = 301, .edits = {.removed_masses = {5}}};
-  const Change of_masses{.cycle = 301,
-                         .op = 1,
-                         .edits = {.removed_masses = {5},
-                                   .new_masses = {{{1, 2, 3}, 0.2, 1, 0, 9}},
-                                   .new_springs = {{1, 2, {1, 0, 0, 0}, 0.5}},
-                                   .causes = {.removed_masses = {0.25}, .new_masses = {7}, .new_springs = {8}}}};
+  Change torn_off{.cycle = 301}, of_masses{.cycle = 301, .op = 1};
+  torn_off.edits.remove_mass(5);
+  of_masses.edits.remove_mass(5, {.cause = 0.25});
+  of_masses.edits.divide(0, {1, 2, 3}, {.mass = 0.2, .material = 1, .identity = 9, .cause = 7});
+  of_masses.edits.join(1, 2, Material{1, 0, 0, 0}, {.rest_length = 0.5, .cause = 8});
   const std::vector<Change> given = {change_of_all_kinds(), torn_off, change_of_all_kinds(), of_masses};
   LifeRecord record;
   EXPECT_TRUE(record.empty());
@@ -141,7 +154,7 @@ TEST(LifeRecord, GivesBackWhatItWasGivenAndRefusesADamagedOne) {
   EXPECT_THROW(LifeRecord(std::string(20, '\xff')), std::invalid_argument);
 }
 
-TEST(LifeRecord, ASpringThatGoesAndOneThatComesTakeSome20BytesAndATurnOfGrowthSome30) {
+TEST(LifeRecord, ASpringThatGoesAndOneThatComesTakeSome20BytesAndAScalingSome30) {
   const Experiment turnover =
       small({"encoding.size=[4, 4, 4]", "development.cycles=8", "development.operator.0.springs=50"});
   for (const Life& life : Developed(turnover, 2).lives) {
@@ -161,9 +174,8 @@ TEST(LifeRecord, ASpringThatGoesAndOneThatComesTakeSome20BytesAndATurnOfGrowthSo
 
 TEST(LifeRecord, CausesStayWithTheirEdits) {
   Edits edits;
-  edits.removed_springs = {7, 2, 7, 5};
-  edits.causes.removed_springs = {70, 20, 71, 50};
-  edits.removed_masses = {3, 1};
+  edits.removed_springs = {{7, 70}, {2, 20}, {7, 71}, {5, 50}};
+  edits.removed_masses = {{3}, {1}};
   const Developed developed(read(small_experiment), 1);
   const LivingBody& living = developed.lives.front().living;
   const Genome genome;
@@ -171,10 +183,10 @@ TEST(LifeRecord, CausesStayWithTheirEdits) {
   const DevoContext context{living.body, living.state, 4, 9, 1, 1, 0, {}, 0.2, false, genome, layout};
   const Change change = change_by(edits, 1, context);
   EXPECT_EQ(change.cycle, 4u);
-  EXPECT_THAT(change.edits.removed_springs, ::testing::ElementsAre(2, 5, 7));
-  EXPECT_THAT(change.edits.causes.removed_springs, ::testing::ElementsAre(20, 50, 70));
-  EXPECT_THAT(change.edits.removed_masses, ::testing::ElementsAre(1, 3));
-  EXPECT_TRUE(change.edits.causes.removed_masses.empty());
+  EXPECT_THAT(indices(change.edits.removed_springs), ::testing::ElementsAre(2, 5, 7));
+  EXPECT_THAT(causes(change.edits.removed_springs), ::testing::ElementsAre(20, 50, 70));
+  EXPECT_THAT(indices(change.edits.removed_masses), ::testing::ElementsAre(1, 3));
+  EXPECT_TRUE(causes(change.edits.removed_masses).empty());
 }
 
 TEST(LifeRecord, WhatComesAboutAtRandomPlacesHasNoCause) {
@@ -182,8 +194,7 @@ TEST(LifeRecord, WhatComesAboutAtRandomPlacesHasNoCause) {
   const auto causes_named = [&] {
     std::size_t count = 0;
     for (const Life& life : Developed(experiment, 6).lives)
-      for (const Change& change : life.record.changes())
-        for (const auto list : Causes::lists) count += (change.edits.causes.*list).size();
+      for (const Change& change : life.record.changes()) count += all_causes(change.edits).size();
     return count;
   };
   EXPECT_GT(causes_named(), 100u);
@@ -205,9 +216,9 @@ TEST(LifeRecord, ALifeLivedAgainIsAllowedTheEnergyThatItHadThen) {
     // the first spring goes and another one comes in its place, without force or stretched
     const auto exchange = [&](const DevoContext& context, Edits& edits) {
       const Spring& spring = context.body.springs.front();
-      edits.new_springs = {{spring.a, spring.b, context.body.materials[spring.material], std::nullopt}};
+      edits.join(spring.a, spring.b, context.body.materials[spring.material]);
       if (stretch) edits.new_springs[0].rest_length = *stretch * spring.rest_length;
-      edits.removed_springs = {0};
+      edits.remove_spring(0);
     };
     const Experiment experiment = with({Told({}, exchange)});
     const Life life = matured(experiment);
@@ -215,6 +226,99 @@ TEST(LifeRecord, ALifeLivedAgainIsAllowedTheEnergyThatItHadThen) {
     energies.push_back(life.living.state.start_energy);
   }
   EXPECT_GT(energies[1], energies[0]) << "what an operator strains is allowed";
+}
+
+/// An encoding of a row of masses, each joined to the next two, whose springs remember 0.1, -0.2 and 0 in turns under
+/// the name "x".
+std::unique_ptr<Encoding> row_of(std::uint32_t masses) {
+  Blueprint blueprint;
+  for (std::uint32_t i = 0; i < masses; ++i) blueprint.body.masses.push_back({{0.5 * i, 0, 0}, 0.2, 1, 0});
+  for (std::uint32_t i = 0; i < masses; ++i)
+    for (std::uint32_t j = i + 1; j < std::min(i + 3, masses); ++j) {
+      blueprint.spring_memory["x"].push_back(std::array{0.1, -0.2, 0.0}[blueprint.body.springs.size() % 3]);
+      blueprint.body.springs.push_back({i, j, 0.5 * (j - i), 1});
+    }
+  return std::make_unique<GivenBlueprint>(std::move(blueprint));
+}
+
+/// An operator that in each application multiplies what it remembers about springs by a factor, and brings all springs
+/// a part of the way to 1 + x times their lengths.
+Told scaler(double factor) {
+  Told told({}, [=](const DevoContext& context, Edits& edits) {
+    for (std::uint32_t s = 0; factor != 1 && s < context.body.springs.size(); ++s)
+      edits.remember_spring(s, {factor * context.spring_memory[s][0]});
+    edits.scale_lengths({.from = context.application - 1.0,
+                         .to = static_cast<double>(context.application),
+                         .whole = static_cast<double>(context.applications)});
+  });
+  told.of_springs = {"x"};
+  return told;
+}
+
+TEST(LifeRecord, AScalingIsShortForAnyNumberOfSpringsUnlessTheOperatorHasChangedWhatItRemembers) {
+  const auto expect_closed_form = [](const Life& life, double factor) {
+    const std::vector<Spring>& springs = life.living.body.springs;
+    for (std::size_t s = 0; s < springs.size(); ++s) {
+      const double first = factor * std::array{0.1, -0.2, 0.0}[s % 3], second = factor * first;
+      const double expected = (1 + first / 2) * (1 + second) / (1 + second / 2);
+      EXPECT_NEAR(springs[s].rest_length / springs[s].first_length, expected, 1e-12) << s;
+    }
+  };
+  for (const std::uint32_t masses : {5u, 80u})
+    for (const double factor : {1.0, 0.75}) {
+      SCOPED_TRACE(std::to_string(masses) + " masses, times " + std::to_string(factor));
+      Experiment experiment = with({scaler(factor)});
+      experiment.encoding = row_of(masses);
+      const Life life = matured(experiment);
+      expect_closed_form(life, factor);
+      const std::vector<Change> changes = life.record.changes();
+      ASSERT_EQ(changes.size(), 2u);
+      const std::size_t springs = life.living.body.springs.size();
+      for (const Change& change : changes) {
+        EXPECT_EQ(only_scales(change.edits), factor == 1);
+        EXPECT_EQ(change.edits.changed_springs.size(), factor == 1 ? 0 : springs - springs / 3)
+            << "a third of the springs has nowhere to go";
+      }
+      if (factor == 1) {
+        EXPECT_LE(life.record.bytes().size(), 2 * 40u);
+      }
+      experiment.devo[0].op = std::make_unique<Told>(scaler(3));  // what it would do now does not matter
+      expect_same_life(matured(experiment, {LifeRecord(life.record.bytes())}), life);
+    }
+}
+
+TEST(LifeRecord, SpringsThatAreLikeOthersAreScaledLikeThemAlsoInALifeLivedAgain) {
+  const auto exchange = [](const DevoContext& context, Edits& edits) {
+    if (context.cycle != 1) return;
+    const Material& material = context.body.materials[context.body.springs[0].material];
+    edits.remove_spring(4);  // the model of a new one, of masses 2 and 3
+    edits.join(0, 3, material, {.like = 1, .cause = 4});
+    edits.join(1, 4, material, {.like = 0});
+    edits.join(2, 3, material, {.like = 4});
+    edits.join(2, 5, material);
+    edits.remove_mass(7);
+  };
+  Experiment experiment = with({Told({}, exchange), scaler(1)});
+  experiment.encoding = row_of(8);
+  const Life life = matured(experiment);
+  const std::vector<Spring>& springs = life.living.body.springs;
+  ASSERT_EQ(springs.size(), 13u - 1 - 2 + 4);
+  const auto scaled = [&](std::size_t spring) { return springs[spring].rest_length / springs[spring].first_length; };
+  // the new ones are there before the first turn of the scaling
+  EXPECT_NEAR(scaled(10), 0.8, 1e-12);
+  EXPECT_NEAR(scaled(11), 1.1, 1e-12);
+  EXPECT_NEAR(scaled(12), 0.8, 1e-12);
+  EXPECT_EQ(scaled(13), 1) << "like no other";
+  EXPECT_NEAR(scaled(0), 1.1, 1e-12);
+  const std::vector<Change> changes = LifeRecord(life.record.bytes()).changes();
+  ASSERT_EQ(changes.size(), 3u);
+  std::vector<std::optional<std::uint32_t>> models;
+  for (const NewSpring& spring : changes[0].edits.new_springs) models.push_back(spring.like);
+  EXPECT_THAT(models, ::testing::ElementsAre(1u, 0u, 4u, std::nullopt));
+  EXPECT_TRUE(only_scales(changes[1].edits) && only_scales(changes[2].edits));
+  const Life again = matured(experiment, {LifeRecord(life.record.bytes())});
+  expect_same_life(again, life);
+  EXPECT_EQ(again.living.memory.at(1).springs.values, life.living.memory.at(1).springs.values);
 }
 
 /// Simulates lives with and without a record in one batch. Development decides differently in this batch than in the
@@ -283,15 +387,15 @@ bool ever_on_front(const ArchivedIndividual& one, const std::vector<ArchivedIndi
 /// A selection operator that drops the best individuals, so that others come to the front.
 class Levelling final : public Selection {
  public:
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const Candidate> rows, std::uint32_t count,
-                                                               Rng& rng) const override {
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
-    const auto draw = [&] { return rng.below(static_cast<std::uint32_t>(rows.size())); };
-    while (pairs.size() < count) pairs.emplace_back(draw(), draw());
-    return pairs;
+  std::vector<Couple> parents(const SelectionContext& context, std::uint32_t count, Rng& rng) const override {
+    std::vector<Couple> couples;
+    const auto draw = [&] { return rng.below(static_cast<std::uint32_t>(context.rows.size())); };
+    while (couples.size() < count) couples.push_back({draw(), draw()});
+    return couples;
   }
 
-  std::vector<std::uint32_t> survivors(std::span<const Candidate> rows, std::uint32_t population, Rng&) const override {
+  Survival survivors(const SelectionContext& context, std::uint32_t population, Rng&) const override {
+    const auto rows = context.rows;
     std::vector<std::uint32_t> order(rows.size());
     std::iota(order.begin(), order.end(), 0u);
     const auto score = [&](std::uint32_t row) { return rows[row].ok() ? rows[row].scores[0] : 1e300; };

@@ -243,6 +243,28 @@ TEST(Lives, DecodeEachGenomeOnceForAllScenesTheyDevelopIn) {
   EXPECT_EQ(counted.decoded, 5);
 }
 
+TEST(Lives, AreKnownByNumberToOperatorsAndScores) {
+  std::map<std::uint32_t, int> calls, scores;
+  Experiment experiment =
+      testing::with({Told({}, [&](const DevoContext& context, Edits&) { ++calls[context.life]; })},
+                    testing::overrides({three, noisy, "scenario=[{name='here'}, {name='there', develops=true}]"}));
+  score_by(experiment, {{brief, {{"number", "1"}}, [&](const Observation& seen) {
+                           ++scores[seen.life];
+                           return std::vector{static_cast<double>(seen.life)};
+                         }}});
+  const std::vector<Individual> one = breed(experiment, {}, 0, 0, 1);
+  const Result all = results_of(experiment, living(one, 1, 3)).front();
+  ASSERT_EQ(all.status, Status::ok) << all.reason;
+  EXPECT_THAT(all.lives, ElementsAre(ElementsAre(1), ElementsAre(2), ElementsAre(3)));
+  const std::map<std::uint32_t, int> four_each{{1, 4}, {2, 4}, {3, 4}}, two_each{{1, 2}, {2, 2}, {3, 2}};
+  EXPECT_EQ(calls, four_each) << "in two scenes, of two cycles each";
+  EXPECT_EQ(scores, two_each) << "in two scenarios";
+  calls.clear(), scores.clear();
+  results_of(experiment, living(one, 5, 1));
+  EXPECT_EQ(calls, (std::map<std::uint32_t, int>{{5, 4}}));
+  EXPECT_EQ(scores, (std::map<std::uint32_t, int>{{5, 2}}));
+}
+
 TEST(Lives, HaveTheSameDrawsUnlessTheExperimentAsksForNewOnes) {
   const std::vector<std::string> blind{three, "development.operator.0={name='spring-turnover', springs=2}",
                                        "scenario=[{name='shaken', start_noise=0.01}]"};
@@ -503,12 +525,12 @@ TEST(VerifyFront, WithLivesRefusesThoseWhoseFitnessWasLuck) {
 /// The score of a robot follows from the draws of its development alone.
 TEST(LivesToCome, HaveTheDrawsOfTheRunOrNewOnes) {
   for (const std::string between : {"same", "new"}) {
-    Experiment experiment = testing::with(
-        {Told({},
-              [](const DevoContext& context, Edits& edits) {
-                edits.changed_springs.push_back({.spring = 0, .stiffness_factor = 1 + context.draw({"which", 0})});
-              })},
-        testing::overrides({"development.draws_between_lives=" + between, noisy, "experiment.lives=2"}));
+    Experiment experiment =
+        testing::with({Told({},
+                            [](const DevoContext& context, Edits& edits) {
+                              edits.change_spring(0, {.stiffness_factor = 1 + context.draw({"which", 0})});
+                            })},
+                      testing::overrides({"development.draws_between_lives=" + between, noisy, "experiment.lives=2"}));
     score_by(experiment, {{brief, {{"drawn", "1"}}, [](const Observation& seen) {
                              return std::vector{seen.body->springs[0].stiffness_factor};
                            }}});

@@ -116,7 +116,7 @@ TEST(MassRecords, DegreeAndLoadAreSumsOverTheSprings) {
     EXPECT_EQ(numbers_of(context.degree), degree);
     EXPECT_EQ(numbers_of(context.load), load);
     EXPECT_GT(*std::max_element(load.begin(), load.end()), 0);
-    edits.removed_springs = {3};
+    edits.remove_spring(3);
   })}));
   EXPECT_EQ(calls, 2);
 }
@@ -134,7 +134,7 @@ TEST(MassRecords, AgesCountFromBirthAndFollowWhatComesAndGoes) {
   const auto act = [&](const DevoContext& context, Edits& edits) {
     ages.push_back(numbers_of(context.age));
     if (context.cycle == 1) add_mass(context, edits);
-    if (context.cycle == 2) edits.removed_masses = {0};
+    if (context.cycle == 2) edits.remove_mass(0);
   };
   matured(with({Told({.age = true}, act)}, {{"development.cycles", "3", ""}}));
   ASSERT_EQ(ages.size(), 3u);
@@ -167,7 +167,7 @@ TEST(MassRecords, TheNextOperatorSeesThemFollowTheEditsOfTheFirst) {
   matured(with({Told(all_of_masses,
                      [&](const DevoContext& context, Edits& edits) {
                        before = known(context);
-                       edits.removed_masses = {4};
+                       edits.remove_mass(4);
                        add_mass(context, edits);
                      }),
                 Told(all_of_masses, [&](const DevoContext& context, Edits&) { after = known(context); })},
@@ -276,15 +276,16 @@ TEST(Materials, GoWhenNothingIsMadeOfThemUnlessTheyAreOfTheExperiment) {
 }
 
 TEST(Materials, AreThoseOfTheSpringsHoweverOftenTheseChange) {
-  Body body = body_of({bone, muscle}, std::vector<std::uint32_t>(50, 0), {1, 1}, 2);
+  LivingBody living{.body = body_of({bone, muscle}, std::vector<std::uint32_t>(50, 0), {1, 1}, 2)};
+  const Body& body = living.body;
   for (int cycle = 1; cycle <= 16; ++cycle) {
-    Edits edits;
+    Edits edits(body);
     for (std::uint32_t s = 0; s < body.springs.size(); ++s) {
       Material material = body.materials[body.springs[s].material];
       material.stiffness *= s % 7 == 0 ? 1 : 0.9 + 0.01 * s;
-      edits.changed_springs.push_back({.spring = s, .material = material});
+      edits.change_spring(s, {.material = material});
     }
-    apply(edits, body);
+    apply(edits, living);
     for (const ChangedSpring& changed : edits.changed_springs)
       ASSERT_EQ(body.materials.at(body.springs[changed.spring].material), changed.material) << changed.spring;
     EXPECT_LE(body.materials.size(), 2 + body.springs.size()) << "after cycle " << cycle;
@@ -313,12 +314,13 @@ TEST(Materials, OfALifeAreThoseOfItsSpringsAndOfTheExperimentEachOnce) {
   for (std::size_t i = 0; i < lives.size(); ++i) {
     if (!lives[i].alive()) continue;
     ++alive;
-    expect_no_others(born[i]);
+    const Body& body = born[i].body;
+    expect_no_others(body);
     expect_no_others(lives[i].living.body);
-    EXPECT_GT(lives[i].living.body.materials.size(), born[i].materials.size());
-    for (const Change& change : lives[i].record.changes()) apply(change.edits, born[i]);
-    EXPECT_EQ(born[i].materials, lives[i].living.body.materials);
-    EXPECT_EQ(made_of(born[i]), made_of(lives[i].living.body));
+    EXPECT_GT(lives[i].living.body.materials.size(), body.materials.size());
+    for (const Change& change : lives[i].record.changes()) apply(change.edits, born[i], change.op);
+    EXPECT_EQ(body.materials, lives[i].living.body.materials);
+    EXPECT_EQ(made_of(body), made_of(lives[i].living.body));
   }
   EXPECT_GE(alive, 2u);
 }

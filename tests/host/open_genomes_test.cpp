@@ -61,7 +61,9 @@ TEST(OpenGenomes, HaveASectionForEachOwnerAndAreToldByName) {
   EXPECT_EQ(sections[0]["blocks"][0]["genes"]["bias"], individual.genome[0]);
   const auto& link = sections[0]["blocks"][12];
   EXPECT_EQ(link["type"], "link");
-  EXPECT_EQ(link["genes"]["on"], 1);
+  EXPECT_EQ(link["genes"]["on"], "on");
+  const std::span<const std::string> functions = experiment.layout.types[0].options(neat::function);
+  EXPECT_EQ(sections[0]["blocks"][0]["genes"]["function"], functions[static_cast<std::size_t>(individual.genome[1])]);
   EXPECT_EQ(link["genes"]["from"], sections[0]["blocks"][0]["id"]);
   EXPECT_EQ(link["genes"]["to"], sections[0]["blocks"][4]["id"]);
   EXPECT_EQ(sections[1]["blocks"][0]["genes"]["ln(sigma)"], individual.genome.genes.back());
@@ -89,6 +91,18 @@ TEST(OpenGenomes, AreStoredAndResumedToTheBit) {
     sizes.insert(whole.individual(id)->genome.blocks.size());
   }
   EXPECT_GT(sizes.size(), 5u) << "blocks come and go";
+}
+
+TEST(OpenGenomes, OfOptionsWithoutNamesHaveTheirNumbers) {
+  Layout own, layout{.sections = {}};
+  own.add_block({{.choices = 3}, {.choices = 3}}, 3, "cell");
+  own.types.back().gene_names = {"kind", "state"};
+  own.types.back().name_options(1, {"young", "grown", "old"});
+  add_section(layout, "x", own);
+  const nlohmann::ordered_json genes = genes_json(Genome{2, 1, 0}, layout)[0]["blocks"][0]["genes"];
+  EXPECT_EQ(genes["kind"], 2);
+  EXPECT_EQ(genes["state 0"], "grown");
+  EXPECT_EQ(genes["state 1"], "young");
 }
 
 TEST(OpenGenomes, OfBlocksWithoutNamesAreNumbered) {
@@ -212,7 +226,7 @@ using ::testing::IsEmpty;
 
 struct Network {
   Layout layout;
-  neat::Types types = neat::add_types(layout, 1, 2, 9, 9);
+  neat::Types types = neat::add_types(layout, 1, {"linear", "sine"}, 9, 9);
   Genome parent;
 
   Network() {

@@ -13,6 +13,7 @@
 #include "support/messages.hpp"
 #include "support/refusals.hpp"
 #include "support/scorer.hpp"
+#include "support/told.hpp"
 
 namespace evodevo::EVODEVO_FILE {
 namespace {
@@ -326,6 +327,18 @@ TEST(Scenarios, ThatDevelopAreFilmedFromBirthOn) {
   ASSERT_EQ(film.film.size(), film_there.film.size());
   for (std::size_t shot = 0; shot < film.film.size(); ++shot)
     EXPECT_EQ(film.film[shot].frames.back().positions, film_there.film[shot].frames.back().positions);
+}
+
+TEST(Scenarios, AreKnownByNameToTheOperatorsThatDevelopABodyInThem) {
+  Experiment experiment = with(muddy + scenario("slope", "gravity.slope = 2") + scenario("load", "develops = true"));
+  std::map<std::string, int> calls;
+  experiment.devo.at(0).op = std::make_unique<testing::Told>(RecordRequest{}, [&](const DevoContext& context, Edits&) {
+    ++calls[std::string(context.scenario)];
+    EXPECT_EQ(context.life, 1u);
+  });
+  alive(lived(experiment));
+  // two cycles each: in the experiment's own scene, and in those in which it develops
+  EXPECT_EQ(calls, (std::map<std::string, int>{{"", 2}, {"mud", 2}, {"load", 2}}));
 }
 
 TEST(Scenarios, WithFaultsAreRefused) {

@@ -4,13 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "archive/record_check.hpp"
 #include "commands/run/run.hpp"
 #include "evodevo/helpers/rows.hpp"
-#include "evodevo/helpers/selection/memory.hpp"
+#include "evodevo/plugin.hpp"
+#include "evolution/breeding.hpp"
 #include "evolution/selection_table.hpp"
 #include "support/changed.hpp"
 #include "support/experiments.hpp"
@@ -113,21 +113,41 @@ TEST(Rows, OfThoseThatFailedTheLeastInfeasibleComeFirst) {
   EXPECT_THAT(best_first(rows), ElementsAre(2, 3, 1, 0));
 }
 
-/// Makes children with gene values that say what it saw; the last child has a parent and a mate.
+TEST(Rows, TiesAreBrokenByIdWhateverTheOrderOfTheRows) {
+  const std::vector<double> score = {1};
+  std::vector<Candidate> rows(6);
+  const std::uint32_t ids[] = {9, 3, 7, 2, 8, 5};
+  for (std::size_t i = 0; i < 6; ++i) rows[i].id = ids[i];
+  for (const std::size_t i : {0, 1, 2, 3}) rows[i].scores = score;
+  rows[3].age = 1;
+  EXPECT_THAT(best_first(rows), ElementsAre(1, 2, 0, 3, 5, 4)) << "by score, youth and id; then who failed, by id";
+}
+
+/// Makes children with gene values that say what it saw; the last child has a parent and a mate. It remembers how often
+/// it has made children, and notes that and its place about each of them.
 struct Maker final : Selection {
-  std::vector<Child> children(const SelectionContext& context, std::uint32_t count, Rng&) const override {
-    std::vector<Child> children(count + excess, Child{Genome(context.layout.first_size(), value)});
-    if (context.rows.size() > 2) children.back().parents = parents;
-    return children;
+  std::vector<NoteTitle> notes() const override { return {{"brood"}, {"place", "places"}}; }
+  std::vector<std::string> memory() const override { return {"broods"}; }
+  Offspring children(const SelectionContext& context, std::uint32_t count, Rng&) const override {
+    Offspring made = std::vector<Child>(count + excess, Child{Genome(context.layout.first_size(), value)});
+    if (context.rows.size() > 2) made.children.back().parents = parents;
+    const double broods = context.memory.empty() ? 1 : context.memory.list("broods").at(0) + 1;
+    for (std::size_t i = 0; i < made.children.size(); ++i)
+      made.children[i].notes = {{1, static_cast<double>(i)}, {0, broods}};
+    made.memory = SelectionMemory{.lists = {{"broods", {broods}}}};
+    if (fault) fault(made);
+    return made;
   }
   std::uint32_t excess = 0;
   float value = 1;
   std::vector<std::uint32_t> parents = {2, 1};
+  std::function<void(Offspring&)> fault;
 };
 
 struct Making : ::testing::Test {
   Making() {
     experiment.selection.reset(maker);
+    experiment.notes = maker->notes();
     experiment.child_maker = "maker";
   }
   std::string fault() {
@@ -168,34 +188,84 @@ TEST_F(Making, FaultsOfTheOperatorAreNamed) {
   EXPECT_THAT(fault(), says("row 3", "3 rows"));
   maker->parents = {0, 1, 2};
   EXPECT_THAT(fault(), says("3 parents", "0 to 2"));
+  maker->parents = {0, 1};
+  const auto fault_of = [&](const std::function<void(Offspring&)>& change) {
+    maker->fault = change;
+    return fault();
+  };
+  EXPECT_THAT(fault_of([](Offspring& made) {
+                made.children[3].notes = {{2, 1}};
+              }),
+              says("number 2", "child 3", "2 numbers"));
+  EXPECT_THAT(fault_of([](Offspring& made) {
+                made.children[3].notes = {{1, NAN}};
+              }),
+              says("place = not a number", "child 3", "finite"));
+  EXPECT_THAT(fault_of([](Offspring& made) {
+                made.children[3].notes = {{1, 1}, {1, 2}};
+              }),
+              says("place twice", "child 3"));
+  EXPECT_THAT(fault_of([](Offspring& made) { made.memory->lists["litters"] = {1}; }), says("\"litters\"", "memory()"));
+}
+
+TEST_F(Making, WhatIsRememberedAndNotedBelongsToTheOperatorThatMakesTheChildren) {
+  experiment.random_individuals = 1;
+  Remembered remembered;
+  breed(experiment, population, 9, 100, 4, &remembered);
+  breed(experiment, population, 10, 104, 4, &remembered);
+  EXPECT_THAT(remembered.memory.survivors.list("broods"), ElementsAre(2));
+  EXPECT_TRUE(remembered.memory.parents.empty());
+  ASSERT_EQ(remembered.notes.size(), 12u) << "two about each of six children, and none about who is random";
+  EXPECT_EQ(remembered.notes[11].individual, 106u);
+  EXPECT_EQ(remembered.notes[11].title, 0u);
+  EXPECT_EQ(remembered.notes[11].value, 2);
+
+  auto maker_alone = std::make_unique<Maker>();
+  experiment.child_notes = maker_alone->notes();
+  experiment.parent_selection = std::move(maker_alone);
+  experiment.notes = {{"novelty"}};
+  remembered = {};
+  breed(experiment, population, 9, 100, 4, &remembered);
+  EXPECT_TRUE(remembered.memory.survivors.empty());
+  EXPECT_THAT(remembered.memory.parents.list("broods"), ElementsAre(1));
+  EXPECT_EQ(remembered.notes.at(1).title, 1u) << "after the title of the other operator";
+  EXPECT_EQ(experiment.note_titles().at(1).name, "brood");
 }
 
 /// Remembers how often it was called, and notes that about the first row. It could also note a sum.
 struct Counting final : Selection {
   std::vector<NoteTitle> notes() const override { return {{"calls"}, {"sum", "ids"}}; }
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> couples(const SelectionContext& context, std::uint32_t count,
-                                                               Rng& rng) const override {
-    EXPECT_EQ(calls_in(context), apart ? 0 : context.generation) << "parents are chosen with the memory";
+  std::vector<std::string> memory() const override { return {"calls"}; }
+  std::vector<Couple> parents(const SelectionContext& context, std::uint32_t count, Rng& rng) const override {
+    EXPECT_EQ(calls_in(context.memory), apart ? 0 : context.generation) << "parents are chosen with the memory";
     return draw_pairs(context.rows, count, rng, draw_any);
   }
-  Survival survive(const SelectionContext& context, std::uint32_t population, Rng&) const override {
-    Survival survival{best_first(context.rows)};
-    survival.rows.resize(std::min<std::size_t>(survival.rows.size(), population));
-    const std::uint64_t calls = calls_in(context) + 1;
+  Survival survivors(const SelectionContext& context, std::uint32_t population, Rng&) const override {
+    Survival survival = first_rows(best_first(context.rows), population);
+    const double calls = calls_in(context.memory) + 1;
     EXPECT_EQ(calls, context.generation + 1u);
-    MemoryWriter writer;
-    writer.write(calls);
-    survival.memory = writer.bytes();
-    survival.notes = {{0, 0, static_cast<double>(calls)}};
+    survival.memory = SelectionMemory{.lists = {{"calls", {calls}}}};
+    survival.notes = {{0, 0, calls}};
     if (fault) fault(survival);
     return survival;
   }
-  static std::uint64_t calls_in(const SelectionContext& context) {
-    return context.memory.empty() ? 0 : MemoryReader(context.memory).read<std::uint64_t>();
-  }
+  static double calls_in(const SelectionMemory& memory) { return memory.empty() ? 0 : memory.list("calls").at(0); }
 
   bool apart = false;
   std::function<void(Survival&)> fault;
+};
+
+/// The best survive. It returns no memory, or forgets what it had.
+struct Best final : Selection {
+  std::vector<Couple> parents(const SelectionContext& context, std::uint32_t count, Rng& rng) const override {
+    return draw_pairs(context.rows, count, rng, draw_any);
+  }
+  Survival survivors(const SelectionContext& context, std::uint32_t population, Rng&) const override {
+    Survival survival = first_rows(best_first(context.rows), population);
+    if (forgets) survival.memory = SelectionMemory();
+    return survival;
+  }
+  bool forgets = false;
 };
 
 class Remembering : public ::testing::Test {
@@ -226,12 +296,29 @@ class Remembering : public ::testing::Test {
 };
 
 TEST_F(Remembering, IsCommittedWithTheGenerationAndGivenBack) {
-  EXPECT_TRUE(Archive::create(scratch_ / "new", experiment_, "test").memory().empty());
-  EXPECT_EQ(MemoryReader(evolved(2).memory()).read<std::uint64_t>(), 2u);
+  EXPECT_TRUE(Archive::create(scratch_ / "new", experiment_, "test").memory().survivors.empty());
+  EXPECT_EQ(Counting::calls_in(evolved(2).memory().survivors), 2);
   Archive archive = Archive::resume(scratch_ / "run");
   check_resumable(archive, experiment_);
   evolve_to(archive, 4);
-  EXPECT_EQ(MemoryReader(archive.memory()).read<std::uint64_t>(), 4u);
+  EXPECT_EQ(Counting::calls_in(archive.memory().survivors), 4);
+  EXPECT_TRUE(archive.memory().parents.empty());
+}
+
+TEST_F(Remembering, WithoutANewMemoryTheOldOneStaysAndAnEmptyOneForgets) {
+  const SelectionMemory version_3{.version = 3, .lists = {{"calls", {0.1, -0.0, 1e300}}}};
+  counting_->fault = [&](Survival& survival) { survival.memory = version_3; };
+  Archive archive = evolved(1);
+  EXPECT_EQ(archive.memory().survivors, version_3);
+  EXPECT_TRUE(std::signbit(archive.memory().survivors.lists.at("calls").at(1)));
+  experiment_.selection = std::make_unique<Best>();
+  evolve_to(archive, 2);
+  EXPECT_EQ(archive.memory().survivors, version_3) << "of the last generation, though nothing was returned";
+  auto forgetting = std::make_unique<Best>();
+  forgetting->forgets = true;
+  experiment_.selection = std::move(forgetting);
+  evolve_to(archive, 3);
+  EXPECT_TRUE(archive.memory().survivors.empty());
 }
 
 TEST_F(Remembering, NotesOfAnIndividualAreTheLastOnes) {
@@ -253,7 +340,7 @@ TEST_F(Remembering, AnotherOperatorForParentsHasNoMemory) {
   auto parents = std::make_unique<Counting>();
   parents->apart = true;
   experiment_.parent_selection = std::move(parents);
-  EXPECT_EQ(MemoryReader(evolved(3).memory()).read<std::uint64_t>(), 3u);
+  EXPECT_EQ(Counting::calls_in(evolved(3).memory().survivors), 3);
 }
 
 TEST_F(Remembering, FaultsAreNamedBeforeAnythingIsCommitted) {
@@ -267,8 +354,17 @@ TEST_F(Remembering, FaultsAreNamedBeforeAnythingIsCommitted) {
   EXPECT_THAT(fault_of([](Survival& s) { s.rows = {2, 2}; }), testing::naming("twice", "different"));
   EXPECT_THAT(fault_of([](Survival& s) { s.rows = {999}; }), testing::naming("row 999", "1 to 6", "of 6"));
   EXPECT_THAT(fault_of([](Survival& s) { s.rows.clear(); }), testing::naming("0 survivors", "1 to 6"));
-  EXPECT_THAT(fault_of([](Survival& s) { s.memory.resize((std::size_t{128} << 20) + 1); }),
-              testing::naming("134217729", "134217728"));
+  const auto remembers = [&](const std::string& list, const std::vector<double>& numbers) {
+    return fault_of([&](Survival& s) { s.memory = SelectionMemory{.lists = {{"calls", {}}, {list, numbers}}}; });
+  };
+  EXPECT_THAT(remembers("sum", {1}), testing::naming("\"sum\"", "memory()"));
+  for (const double wrong : {NAN, INFINITY})
+    EXPECT_THAT(fault_of([&](Survival& s) {
+                  s.memory->lists["calls"] = {1, wrong};
+                }),
+                testing::naming("\"calls\"", "number 1", "finite"));
+  EXPECT_THAT(fault_of([&](Survival& s) { s.memory->lists["calls"].resize((std::size_t{16} << 20) + 1); }),
+              testing::naming("134217736", "134217728"));
 }
 
 TEST_F(Remembering, TheRecordOfAnotherOperatorIsRefused) {
@@ -279,74 +375,99 @@ TEST_F(Remembering, TheRecordOfAnotherOperatorIsRefused) {
 }
 
 /// Makes children that are all equal, and counts those that it sees again.
-struct Twins final : Selection {
-  std::vector<Child> children(const SelectionContext& context, std::uint32_t count, Rng&) const override {
-    return std::vector<Child>(count, {Genome(context.layout.first_size(), 1)});
+struct Twins : Selection {
+  std::vector<std::string> memory() const override { return {"newborns", "broods"}; }
+  std::vector<NoteTitle> notes() const override { return {{"brood"}}; }
+  Offspring children(const SelectionContext& context, std::uint32_t count, Rng&) const override {
+    const double broods = context.memory.empty() ? 1 : context.memory.list("broods").at(0) + 1;
+    Offspring made = std::vector<Child>(count, {Genome(context.layout.first_size(), 1), {}, {{0, broods}}});
+    made.memory = SelectionMemory{.lists = {{"newborns", {}}, {"broods", {broods}}}};
+    return made;
   }
-  Survival survive(const SelectionContext& context, std::uint32_t, Rng&) const override {
+  Survival survivors(const SelectionContext& context, std::uint32_t, Rng&) const override {
+    const auto broods = context.memory.empty() ? std::vector<double>() : context.memory.list("broods");
+    EXPECT_EQ(broods, apart ? std::vector<double>() : std::vector{context.generation + 1.0})
+        << "what children() has remembered in this generation";
     const auto newborns =
         std::count_if(context.rows.begin(), context.rows.end(), [](const Candidate& row) { return row.is_newborn; });
-    return {{0}, {static_cast<std::byte>(newborns)}};
+    Survival survival = std::vector<std::uint32_t>{0};
+    survival.memory = SelectionMemory{.lists = {{"newborns", {static_cast<double>(newborns)}}, {"broods", broods}}};
+    if (context.rows[0].is_newborn) survival.notes = {{0, 0, -1}};
+    return survival;
   }
+
+  bool apart = false;
 };
 
-TEST_F(Remembering, AnOperatorSeesAllChildrenThatItHasMadeItself) {
-  experiment_.selection = std::make_unique<Twins>();
-  experiment_.notes.clear();
-  experiment_.child_maker = "twins";
-  experiment_.random_individuals = 0;
-  experiment_.children = 4;
-  experiment_.development.cycles = 0;  // equal genes have equal scores, because development draws no random numbers
+struct Twinning : Remembering {
+  Twinning() {
+    experiment_.selection.reset(twins_);
+    experiment_.notes = twins_->notes();
+    experiment_.child_maker = "twins";
+    experiment_.random_individuals = 0;
+    experiment_.children = 4;
+    experiment_.development.cycles = 0;  // equal genes have equal scores, because development draws no random numbers
+  }
+  /// Lets another operator make the children.
+  void part() {
+    twins_->apart = true;
+    experiment_.parent_selection = std::make_unique<Twins>();
+    experiment_.child_notes = {{"litter"}};
+  }
+  /// Returns the value of each note about an individual.
+  static std::map<std::string, double> notes_of(const Archive& archive, std::uint32_t id) {
+    std::map<std::string, double> values;
+    for (const ArchivedNote& note : archive.notes(id)) values[note.name] = note.value;
+    return values;
+  }
+
+  Twins* twins_ = new Twins;
+};
+
+TEST_F(Twinning, AnOperatorSeesAllChildrenThatItHasMadeItself) {
   const auto seen = [&](const char* folder) {
     Archive archive = Archive::create(scratch_ / folder, experiment_, "test");
     evolve_to(archive, 2);
     EXPECT_EQ(archive.generations().back().evaluations, 8) << "four in each generation, the first included";
     EXPECT_EQ(archive.generations().back().clones, 4);
-    return std::to_integer<int>(archive.memory().at(0));
+    return archive.memory().survivors.list("newborns").at(0);
   };
   EXPECT_EQ(seen("own"), 4);
-  experiment_.parent_selection = std::make_unique<Twins>();
+  part();
   EXPECT_EQ(seen("apart"), 1) << "copies are removed if another operator chooses the survivors";
 }
 
-TEST(Memory, IsReadAsItWasWritten) {
-  const std::vector<std::vector<double>> lists{{1, 2}, {}, {3}};
-  MemoryWriter writer;
-  writer.write(std::uint32_t{7});
-  writer.write(std::vector<float>{1.5F, -2});
-  writer.write(-0.0);
-  writer.write(std::vector<double>{});
-  writer.write(lists);
-  MemoryReader reader(writer.bytes());
-  EXPECT_EQ(reader.read<std::uint32_t>(), 7u);
-  EXPECT_EQ(reader.read_list<float>(), (std::vector<float>{1.5F, -2}));
-  EXPECT_TRUE(std::signbit(reader.read<double>()));
-  EXPECT_TRUE(reader.read_list<double>().empty());
-  EXPECT_EQ(reader.read_lists<double>(), lists);
-  reader.finish();
+TEST_F(Twinning, WhatChildrenRemembersAndNotesIsCommittedAndGivenBack) {
+  for (const bool apart : {false, true}) {
+    if (apart) part();
+    const auto folder = scratch_ / (apart ? "apart" : "own");
+    {
+      Archive begun = Archive::create(folder, experiment_, "test");
+      evolve_to(begun, 1);
+    }
+    Archive archive = Archive::resume(folder);
+    check_resumable(archive, experiment_);
+    evolve_to(archive, 3);
+    const Memories memory = archive.memory();
+    EXPECT_THAT((apart ? memory.parents : memory.survivors).list("broods"), ElementsAre(3)) << "one per generation";
+    EXPECT_EQ(memory.parents.empty(), !apart);
+    using Notes = std::map<std::string, double>;
+    EXPECT_EQ(notes_of(archive, 5), (apart ? Notes{{"litter", 2}} : Notes{{"brood", 2}}));
+    EXPECT_EQ(notes_of(archive, apart ? 3 : 0), (apart ? Notes{{"brood", -1}, {"litter", 1}} : Notes{{"brood", -1}}))
+        << "survivors() has noted another number about this child";
+  }
 }
 
-TEST(Memory, ThatIsTooShortOrTooLongOrNotFiniteIsRefused) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  MemoryWriter writer;
-  writer.write(std::vector<double>{1, 1e300, 3});
-  EXPECT_THROW(MemoryWriter().write(infinity), std::runtime_error);
-  EXPECT_THROW(MemoryWriter().write(std::vector<float>{0, std::nanf("")}), std::runtime_error);
-  std::vector<std::byte> bytes = writer.bytes();
-  std::memcpy(bytes.data() + sizeof(std::uint64_t), &infinity, sizeof infinity);
-  EXPECT_THROW(MemoryReader(bytes).read_list<double>(), std::runtime_error);
-  const std::span<const std::byte> all = writer.bytes();
-  for (std::size_t left = 0; left < all.size(); ++left) {
-    MemoryReader reader(all.first(left));
-    EXPECT_THROW(reader.read_list<double>(), std::runtime_error) << left;
-  }
-  MemoryReader reader(all);
-  reader.read<std::uint64_t>();
-  EXPECT_THAT([&] { reader.finish(); }, ::testing::ThrowsMessage<std::runtime_error>(::testing::HasSubstr("24")));
-  MemoryWriter huge;
-  huge.write(std::numeric_limits<std::uint64_t>::max());
-  EXPECT_THROW(MemoryReader(huge.bytes()).read_list<double>(), std::runtime_error) << "no memory is allocated for it";
-  EXPECT_THROW(MemoryReader(huge.bytes()).read_lists<double>(), std::runtime_error) << "nor for lists";
+TEST_F(Twinning, AMemoryOfAnOperatorThatTheExperimentLacksIsRefused) {
+  part();
+  const Archive archive = [&] {
+    Archive created = Archive::create(scratch_ / "apart", experiment_, "test");
+    evolve_to(created, 1);
+    return created;
+  }();
+  experiment_.parent_selection.reset();
+  EXPECT_THAT(testing::refusal<ArchiveError>([&] { check_resumable(archive, experiment_); }),
+              testing::naming("[selection.parents]", "remembers"));
 }
 
 namespace fs = std::filesystem;
@@ -400,6 +521,20 @@ TEST(SelectionSettings, ParentsAndSurvivorsCanHaveOperatorsOfTheirOwn) {
   EXPECT_EQ(&both.breeder(), both.selection.get());
 }
 
+TEST(SelectionSettings, WhatAnOperatorOverridesIsFoundWhenItIsCompiled) {
+  const auto found = [](const Selection& op) {
+    return std::string(op.overrides.parents ? "p" : "") + (op.overrides.survivors ? "s" : "") +
+           (op.overrides.children ? "c" : "");
+  };
+  const Experiment experiment = read(selecting(apart("lottery", "best")));
+  EXPECT_EQ(found(*experiment.parent_selection), "p");
+  EXPECT_EQ(found(*experiment.selection), "s");
+  EXPECT_EQ(found(*read(sampling(table("selection", "cma-es"))).selection), "sc");
+  EXPECT_EQ(found(*read(selecting(selection)).selection), "ps");
+  struct Derived final : Twins {};
+  static_assert(overrides_of<Derived>().children && !overrides_of<Derived>().parents, "of its base class");
+}
+
 TEST(SelectionSettings, OperatorsForBothHalvesAreNeeded) {
   EXPECT_THAT(complaint(selecting(table("selection.parents", "lottery"))),
               testing::at_place("test.toml:", "selection.survivors", "[selection.survivors]"));
@@ -408,16 +543,16 @@ TEST(SelectionSettings, OperatorsForBothHalvesAreNeeded) {
   EXPECT_THAT(complaint(selecting(table("selection", "elitist") + apart("lottery", "best"))),
               testing::naming("selection.name"));
   EXPECT_THAT(complaint(selecting(table("selection", "lottery"))),
-              testing::naming("selection.name = \"lottery\"", "chooses_survivors", "[selection.parents]"));
+              testing::naming("selection.name = \"lottery\"", "overrides no survivors()", "[selection.parents]"));
   EXPECT_THAT(complaint(selecting(table("selection", "best"))),
-              testing::naming("selection.name = \"best\"", "chooses_parents", "[selection.survivors]"));
+              testing::naming("selection.name = \"best\"", "parents()", "[selection.survivors]"));
 }
 
-TEST(SelectionSettings, AnOperatorThatNeedsAMemoryCannotChooseParentsAlone) {
+TEST(SelectionSettings, AnOperatorThatRemembersWhenItChoosesSurvivorsCannotChooseParentsAlone) {
   EXPECT_THAT(complaint(selecting(apart("species", "best"))),
-              testing::naming("selection.parents.name = \"species\"", "needs_memory", "[selection]"));
+              testing::naming("selection.parents.name = \"species\"", "memory()", "[selection]"));
   EXPECT_THAT(complaint(sampling(apart("cma-es", "best"))),
-              testing::naming("selection.parents.name = \"cma-es\"", "needs_memory", "[selection]"));
+              testing::naming("selection.parents.name = \"cma-es\"", "memory()", "[selection]"));
   EXPECT_TRUE(read(selecting(apart("lottery", "species"))).parent_selection);
 }
 

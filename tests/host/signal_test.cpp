@@ -156,7 +156,7 @@ TEST(Signal, OfAGeneAndNoiseIsThatWhichFollowsFromTheirVariances) {
 
 /// Draws all genes again, with which children are like anybody.
 struct Forgetting final : Mutation {
-  void mutate(Genome& genome, const Layout&, Rng& rng) const override {
+  void mutate(Genome& genome, const VariationContext&, Rng& rng) const override {
     for (float& gene : genome.genes) gene = static_cast<float>(rng.below(5));
   }
 };
@@ -175,7 +175,7 @@ TEST(Signal, OfChildrenIsToldByTheOperatorThatMadeThem) {
 
 /// Leaves every genome as it is.
 struct Idle final : Mutation {
-  void mutate(Genome&, const Layout&, Rng&) const override {}
+  void mutate(Genome&, const VariationContext&, Rng&) const override {}
 };
 
 TEST(Signal, OfClonesIsWhatRepeats) {

@@ -214,7 +214,7 @@ TEST(Windows, ShorterThanAStepAreInvalid) {
 /// Removes the first mass after the second cycle.
 struct Remover final : Devo {
   void develop(const DevoContext& context, Edits& edits, Rng&) const override {
-    if (context.cycle == 2) edits.removed_masses.push_back(0);
+    if (context.cycle == 2) edits.remove_mass(0);
   }
 };
 

@@ -1,6 +1,7 @@
 // Properties of every devo operator, alone and in any order with others.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "life.hpp"
 
@@ -22,21 +23,30 @@ const std::vector<std::pair<const char*, const char*>> uses = {
     {"ballistic-phase", ""},
 };
 
-/// A life of 60 masses and 400 springs with random stress and growth.
+/// A life of 60 masses and 400 springs with random stress. Springs that can grow or turn do so at random; each of the
+/// uses remembers what it does.
 Life busy_life() {
   Life life = life_of_masses(60);
   for (auto& mass : life.living.body.masses)
     if (mass.material == air) mass.material = tissue;
   Rng rng = stream(7);
   std::set<Pair> pairs;
+  std::vector<double> growth, turns;
   while (pairs.size() < 400) {
     const std::uint32_t a = rng.below(60), b = rng.below(60);
     if (a == b || !pairs.insert(ordered(a, b)).second) continue;
     life.add_spring(a, b, static_cast<std::uint32_t>(bone + pairs.size() % 4), rng.uniform(0, 100));
-    life.living.body.springs.back().growth = static_cast<float>(rng.uniform(0.8, 1.2));
-    life.living.body.springs.back().phase_growth = static_cast<float>(rng.uniform(-1, 1));
+    growth.push_back(rng.uniform(-0.2, 0.2));
+    turns.push_back(rng.uniform(-1, 1));
     life.living.tension.push_back(rng.uniform(-50, 100));
     life.living.muscle_work.push_back(rng.uniform(0, 10));
+  }
+  for (life.op = 0; life.op < uses.size(); ++life.op) {
+    const auto devo = make<Devo>(uses[life.op].first, uses[life.op].second);
+    const std::vector<std::string> needed = devo->traits().needs_at_birth;
+    if (needed == std::vector<std::string>{"growth"}) life.spring_memory() = growth;
+    if (needed == std::vector<std::string>{"turn"}) life.spring_memory() = turns;
+    life.remember_as_many(memory_names(*devo));
   }
   life.application = 1;  // at which every operator changes something
   life.applications = 5;
@@ -58,20 +68,27 @@ TEST(AnyDevo, WorksWithOthersInAnyOrder) {
   std::set<std::string> names;
   for (const auto& [name, toml] : uses) names.insert(name);
   EXPECT_THAT(registry().names("devo"), ::testing::ElementsAreArray(names)) << "each has a use here";
-  std::vector<std::pair<const char*, const char*>> order = uses;
+  std::vector<std::size_t> order(uses.size());  // among the uses
+  std::iota(order.begin(), order.end(), 0u);
   Rng rng = stream(3);
   for (std::uint64_t trial = 0; trial < 20; ++trial) {
     rng.shuffle(order);
     Life life = busy_life();
     std::uint64_t seed = 1000 * trial;
     for (life.application = 1; life.application <= life.applications; ++life.application)
-      for (const auto& [name, toml] : order) {
+      for (const std::size_t use : order) {
+        const auto& [name, toml] = uses[use];
+        life.op = use;
         const Edits edits = develop(*make<Devo>(name, toml), life, seed++);
         ASSERT_NO_THROW(life.living = after(life, edits)) << name;
       }
     const Body& body = life.living.body;
     EXPECT_EQ(body.springs.size(), joined(body).size()) << "two springs join one pair";
     EXPECT_EQ(life.living.stress.size(), body.springs.size());
+    for (const OperatorMemory& memory : life.living.memory) {
+      EXPECT_EQ(memory.masses.values.size(), memory.masses.width * body.masses.size());
+      EXPECT_EQ(memory.springs.values.size(), memory.springs.width * body.springs.size());
+    }
     EXPECT_EQ(life.living.state.position.size(), body.masses.size());
     EXPECT_GE(body.masses.size(), 60u);
     for (const Spring& spring : body.springs) {
@@ -79,6 +96,12 @@ TEST(AnyDevo, WorksWithOthersInAnyOrder) {
       EXPECT_GT(body.materials.at(spring.material).stiffness, 0);
     }
   }
+}
+
+std::vector<double> lengths(const Body& body) {
+  std::vector<double> all;
+  for (const Spring& spring : body.springs) all.push_back(spring.rest_length);
+  return all;
 }
 
 TEST(AnyDevo, OperatorsThatChangeDifferentThingsDoNotDependOnTheirOrder) {
@@ -90,8 +113,12 @@ TEST(AnyDevo, OperatorsThatChangeDifferentThingsDoNotDependOnTheirOrder) {
   std::vector<double> first;
   do {
     Life life = busy_life();
-    for (const std::size_t use : order)
+    const std::vector<double> first_lengths = lengths(life.living.body);
+    for (const std::size_t use : order) {
+      life.op = use;
       life.living = after(life, develop(*make<Devo>(uses[use].first, uses[use].second), life, use));
+    }
+    EXPECT_NE(lengths(life.living.body), first_lengths) << "they grow";
     std::vector<double> springs;
     for (const Spring& spring : life.living.body.springs) {
       const Material& material = life.living.body.materials[spring.material];

@@ -9,21 +9,21 @@ TEST(BallisticGrowth, GoesLinearlyFromBirthToTheEndByOneEditForAllSprings) {
   EXPECT_TRUE(develop(*devo, two_chains(), 1).empty()) << "without growth";
   Life life = life_of_masses(5, false);  // a chain of four springs, of which the first grows and the second shrinks
   for (std::uint32_t s = 0; s < 4; ++s) life.add_spring(s, s + 1, bone, 1);
-  life.living.body.springs[0].growth = 2.5f;
-  life.living.body.springs[1].growth = 0.4f;
+  const std::vector<double> growth = {1.5, -0.6, 0, 0};
+  life.spring_memory() = growth;
   const Body newborn = life.living.body;
   life.applications = 8;
   for (life.application = 1; life.application <= 8; ++life.application) {
     const Edits edits = develop(*devo, life, 1);
-    ASSERT_TRUE(edits.growth.has_value());
-    EXPECT_EQ(std::tuple(edits.growth->from, edits.growth->to, edits.growth->whole),
-              std::tuple(life.application - 1, life.application, 8));
-    EXPECT_TRUE(edits.changed_springs.empty());
+    ASSERT_TRUE(only_scales(edits));
+    const Scaling& scaling = *edits.scaling;
+    EXPECT_EQ(std::tuple(scaling.number, scaling.from, scaling.to, scaling.whole),
+              std::tuple(0u, life.application - 1, life.application, 8));
+    EXPECT_TRUE(edits.spring_memory.items.empty());
     life.living = after(life, edits);
     for (std::uint32_t s = 0; s < 4; ++s) {
-      const Spring& spring = life.living.body.springs[s];
-      const double expected = 1 + (static_cast<double>(spring.growth) - 1) * life.application / 8;
-      EXPECT_NEAR(spring.rest_length / newborn.springs[s].rest_length, expected, 1e-12);
+      const double length = life.living.body.springs[s].rest_length;
+      EXPECT_NEAR(length / newborn.springs[s].rest_length, 1 + growth[s] * life.application / 8, 1e-12);
     }
   }
 }
@@ -33,9 +33,7 @@ TEST(BallisticGrowth, GoesLinearlyFromBirthToTheEndByOneEditForAllSprings) {
 Life chain() {
   Life life = life_of_masses(6, false);
   for (std::uint32_t s = 0; s < 5; ++s) life.add_spring(s, s + 1, s < 4 ? muscle : bone, 1);
-  life.living.body.springs[0].phase_growth = 2.5f;
-  life.living.body.springs[1].phase_growth = -40;  // backwards even in absolute terms, within 10 s at 1 Hz
-  life.living.body.springs[4].phase_growth = 1;
+  life.spring_memory() = {2.5, -40, 0, 0, 1};  // the second: backwards even in absolute terms, within 10 s at 1 Hz
   life.first_time = 2;
   life.last_time = 7;
   return life;
@@ -83,7 +81,7 @@ TEST(BallisticPhase, ChangesMusclesTwiceAndNothingElse) {
     const bool changes = life.application == 1 || life.application == 6;
     EXPECT_EQ(edits.changed_springs.size(), changes ? 2u : 0u) << life.application;
     for (const ChangedSpring& changed : edits.changed_springs) EXPECT_LT(changed.spring, 2u);
-    EXPECT_FALSE(edits.growth);
+    EXPECT_FALSE(edits.scaling);
   }
 }
 
@@ -96,6 +94,15 @@ TEST(BallisticPhase, OneApplicationChangesPhasesAtOnce) {
   expect_phase(life, 1, 9.7, -40);
 }
 
+TEST(Ballistic, SpringsRememberTheirGrowthAndTheirTurnsWhichTheEncodingMustGiveThem) {
+  for (const auto& [name, remembers] : {std::pair{"ballistic-growth", "growth"}, {"ballistic-phase", "turn"}}) {
+    const auto devo = make<Devo>(name);
+    EXPECT_THAT(devo->spring_memory(), ::testing::ElementsAre(remembers));
+    EXPECT_THAT(devo->traits().needs_at_birth, ::testing::ElementsAre(remembers));
+    EXPECT_TRUE(devo->mass_memory().empty() && devo->body_memory().empty());
+  }
+}
+
 TEST(BallisticPhase, ComesToItsEndOnSpringsThatAreAddedMeanwhile) {
   for (const auto& [name, parameters] :
        {std::pair{"spring-turnover", "springs = 1"}, {"mass-turnover", "threshold = 2\nlimit = 1\nsprings = 3"}}) {
@@ -103,13 +110,15 @@ TEST(BallisticPhase, ComesToItsEndOnSpringsThatAreAddedMeanwhile) {
     life.first_time = 2;
     life.last_time = 7;
     for (std::uint32_t s = 0; s < 5; ++s) life.add_spring(s, s + 1, muscle, 1);
-    for (Spring& spring : life.living.body.springs) spring.phase_growth = 2.5f;
+    life.spring_memory() = std::vector(5, 2.5);
     const auto frequency_of = [&](const Spring& one) { return life.living.body.materials[one.material].frequency; };
     const double first = frequency_of(life.living.body.springs[0]);
     apply_at(2, 1, life);
+    life.op = 1;  // what another operator remembers follows its edits, too
     const Edits edits = develop(*make<Devo>(name, parameters), life, 1);
     ASSERT_FALSE(edits.new_springs.empty()) << name;
     life.living = after(life, edits);
+    life.op = 0;
     for (const Spring& spring : life.living.body.springs) EXPECT_GT(frequency_of(spring), first + 0.01) << name;
     apply_at(7, 6, life);
     for (const Spring& spring : life.living.body.springs) EXPECT_NEAR(frequency_of(spring), first, 1e-12) << name;

@@ -161,6 +161,7 @@ TEST_F(Cloud, LetsSitesComeAndGo) {
   EXPECT_EQ(site.least, 1u);
   EXPECT_EQ(site.most, 5u);
   EXPECT_THAT(site.gene_names, ::testing::ElementsAre("x", "y", "z", "material"));
+  EXPECT_EQ(site.option_names.at(3), context().material_names);
 }
 
 TEST_F(Cloud, RefusesMoreSitesThanMost) {

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "base/genome_sections.hpp"
+#include "evodevo/neat.hpp"
 #include "support.hpp"
 #include "support/messages.hpp"
 
@@ -14,7 +15,7 @@ std::vector<double> digest(const Blueprint& blueprint) {
   std::vector<double> digest{static_cast<double>(blueprint.neighbours)};
   for (const Mass& m : blueprint.body.masses)
     digest.insert(digest.end(), {m.rest.x, m.rest.y, m.rest.z, m.mass, static_cast<double>(m.material)});
-  for (const Size& s : blueprint.sizes) digest.insert(digest.end(), {s.start, s.end});
+  for (const auto& [name, numbers] : blueprint.mass_memory) digest.insert(digest.end(), numbers.begin(), numbers.end());
   return digest;
 }
 
@@ -130,7 +131,11 @@ TEST(Neural, IsThePapersNetworkWithTwoMoreOutputsForSizes) {
     const Blueprint blueprint = decoded(*encoding, genome);
     EXPECT_EQ(blueprint.neighbours, 7u);
     ASSERT_EQ(blueprint.body.masses.size(), points.size());
-    ASSERT_EQ(blueprint.sizes.size(), points.size());
+    ASSERT_EQ(blueprint.mass_memory.size(), 2u);
+    const std::vector<double>&births = blueprint.mass_memory.at("size at birth"),
+          &ends = blueprint.mass_memory.at("size at the end");
+    ASSERT_EQ(births.size(), points.size());
+    ASSERT_EQ(ends.size(), points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
       const auto outputs = network(genome, layout, points[i]);
       ASSERT_EQ(outputs.size(), 3u + 5 + 2);
@@ -140,8 +145,8 @@ TEST(Neural, IsThePapersNetworkWithTwoMoreOutputsForSizes) {
       EXPECT_NEAR(mass.rest.z, 1.5 * std::tanh(outputs[2]), 1e-9);
       const double greatest = *std::max_element(outputs.begin() + 3, outputs.begin() + 8);
       EXPECT_NEAR(outputs[3 + static_cast<std::size_t>(mass.material)], greatest, 1e-9);
-      EXPECT_NEAR(blueprint.sizes[i].start, 1 + 0.25 * std::tanh(outputs[8]), 1e-9);
-      EXPECT_NEAR(blueprint.sizes[i].end, 1 + 0.25 * std::tanh(outputs[9]), 1e-9);
+      EXPECT_NEAR(births[i], 1 + 0.25 * std::tanh(outputs[8]), 1e-9);
+      EXPECT_NEAR(ends[i], 1 + 0.25 * std::tanh(outputs[9]), 1e-9);
     }
   }
 }
@@ -178,8 +183,8 @@ TEST_P(AnyNetwork, SizesAreTwoMoreNeuronsThatChangeNothingElse) {
   for (const std::string pairing : {"pairing = 'after-mapping'", "pairing = 'before-mapping'"}) {
     const auto fixed = make<Encoding>(GetParam(), pairing);
     const auto sized = make<Encoding>(GetParam(), pairing + "\nsize_range = 0.9");
-    EXPECT_FALSE(fixed->sets_growth());
-    EXPECT_TRUE(sized->sets_growth());
+    EXPECT_THAT(fixed->spring_memory(), ::testing::IsEmpty());
+    EXPECT_THAT(sized->spring_memory(), ::testing::ElementsAre("growth"));
     const Layout less = fixed->layout(context()), more = sized->layout(context());
     ASSERT_EQ(more.first_blocks.size(), less.first_blocks.size() + 2);
     EXPECT_EQ(more.first_size(), less.first_size() + 2 * less.first_blocks.back().count);
@@ -188,8 +193,8 @@ TEST_P(AnyNetwork, SizesAreTwoMoreNeuronsThatChangeNothingElse) {
     Rng rng = stream(10);
     const Genome genome = sized->random(more, rng);
     Blueprint blueprint = decoded(*sized, genome);
-    ASSERT_EQ(blueprint.sizes.size(), 1000u);
-    blueprint.sizes.clear();
+    ASSERT_EQ(blueprint.mass_memory.at("size at the end").size(), 1000u);
+    blueprint.mass_memory.clear();
     Genome without = genome;
     without.genes.resize(less.first_size());
     EXPECT_EQ(digest(blueprint), digest(decoded(*fixed, without)));
@@ -206,14 +211,79 @@ TEST_P(AnyNetwork, PlacesAndSizesStayInTheirRangesWhateverTheGenes) {
     const Blueprint blueprint = decoded(*encoding, genome);
     for (const Mass& mass : blueprint.body.masses)
       for (const double position : {mass.rest.x, mass.rest.y, mass.rest.z}) EXPECT_LE(std::abs(position), 1);
-    for (const Size& size : blueprint.sizes) {
-      EXPECT_TRUE(size.start >= 0.5 && size.start <= 1.5) << size.start;
-      EXPECT_TRUE(size.end >= 0.5 && size.end <= 1.5) << size.end;
-    }
+    ASSERT_EQ(blueprint.mass_memory.size(), 2u);
+    for (const auto& [name, sizes] : blueprint.mass_memory)
+      EXPECT_THAT(sizes, ::testing::AllOf(::testing::SizeIs(20),
+                                          ::testing::Each(::testing::AllOf(::testing::Ge(0.5), ::testing::Le(1.5)))))
+          << name;
+  }
+}
+
+TEST_P(AnyNetwork, SpringsToNeighboursHaveTheMeanSizeOfTheirMassesAndGrowToThatAtTheEnd) {
+  Blueprint blueprint;
+  blueprint.body.masses.resize(3);
+  blueprint.body.springs = {{0, 1, 1, 0}, {2, 1, 2, 0}, {0, 2, 3, 0}};
+  const std::vector<double> births = {1.5, 0.5, 0.75}, ends = {0.5, 1.0, 1.25};
+  blueprint.mass_memory = {{"size at birth", births}, {"size at the end", ends}};
+  const Blueprint before = blueprint;
+  make<Encoding>(GetParam())->joined(blueprint);
+  EXPECT_TRUE(blueprint.spring_memory.empty()) << "without sizes";
+  EXPECT_EQ(blueprint.body.springs[2].rest_length, 3);
+  make<Encoding>(GetParam(), "size_range = 0.5")->joined(blueprint);
+  ASSERT_EQ(blueprint.spring_memory.size(), 1u);
+  const std::vector<double>& growth = blueprint.spring_memory.at("growth");
+  ASSERT_EQ(growth.size(), 3u);
+  for (std::size_t s = 0; s < 3; ++s) {
+    const auto& [a, b, distance, material, first_length, factor] = before.body.springs[s];
+    const double length = blueprint.body.springs[s].rest_length;
+    EXPECT_DOUBLE_EQ(length, distance * (births[a] + births[b]) / 2);
+    EXPECT_NEAR(length * (1 + growth[s]), distance * (ends[a] + ends[b]) / 2, 1e-6);
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Networks, AnyNetwork, ::testing::Values("neural", "cppn"));
+
+// options ------------------------------------------------------------------------------------------------------------
+
+/// Returns the names of the options of each choice gene of a layout, by the type of its block and its position.
+std::map<std::pair<std::string, std::size_t>, std::vector<std::string>> options_of(const Layout& layout) {
+  std::map<std::pair<std::string, std::size_t>, std::vector<std::string>> options;
+  for (const BlockType& type : layout.types)
+    for (std::size_t gene = 0; gene < type.genes.size(); ++gene)
+      if (const auto names = type.options(gene); type.genes[gene].is_choice())
+        options[{type.name, gene}] = {names.begin(), names.end()};
+  return options;
+}
+
+TEST(Options, HaveNames) {
+  const auto of = [](const std::string& name, const std::string& toml = "") {
+    const Layout layout = make<Encoding>(name, toml)->layout(context());
+    EXPECT_EQ(layout_fault(layout), "") << name;
+    return options_of(layout);
+  };
+  using ::testing::Pair;
+  using ::testing::UnorderedElementsAre;
+  const std::vector<std::string> materials = context().material_names, some = {"bone", "tissue"},
+                                 functions = {"linear", "tanh", "sine", "gaussian", "absolute"};
+  const std::string chosen = "materials = [\"tissue\", \"bone\"]\n";
+  EXPECT_THAT(of("cppn"), UnorderedElementsAre(Pair(Pair("neuron", 0), functions)));
+  EXPECT_THAT(of("cppn", "hidden = 4"), UnorderedElementsAre(Pair(Pair("neuron", 0), functions)))
+      << "both layers have neurons of one type";
+  EXPECT_THAT(of("neat"), UnorderedElementsAre(Pair(Pair("node", neat::function), functions),
+                                               Pair(Pair("link", neat::on), std::vector<std::string>{"off", "on"})));
+  EXPECT_THAT(of("direct"), UnorderedElementsAre(Pair(Pair("springs", 0), materials)));
+  EXPECT_THAT(of("direct", chosen), UnorderedElementsAre(Pair(Pair("springs", 0), some)));
+  EXPECT_THAT(of("voxel", chosen), UnorderedElementsAre(Pair(Pair("voxel", 0), some)));
+  EXPECT_THAT(of("voxel", "size_range = 0.5\nphase_range = 0.5\nmirrored = \"body\""),
+              UnorderedElementsAre(Pair(Pair("voxel", 2), materials)));
+  std::vector<std::string> products = {"divide", "to x", "to y", "to z", "adhesion", "signal", "memory 1"},
+                           inputs = {"signal beside", "free sites", "time", "x", "y", "z"};
+  for (const std::string& material : some) products.push_back("material " + material);
+  inputs.insert(inputs.begin(), products.begin(), products.end());
+  EXPECT_THAT(of("regulatory", chosen + "memory = 2"),
+              UnorderedElementsAre(Pair(Pair("gene", 0), products), Pair(Pair("gene", 1), inputs),
+                                   Pair(Pair("gene", 3), inputs)));
+}
 
 // cppn ---------------------------------------------------------------------------------------------------------------
 
@@ -354,18 +424,25 @@ TEST(Voxel, SpringsTakeTheSizesAndThePhasesOfTheirVoxels) {
   // the last voxel is air, whose phases and sizes have no effect
   const Genome genome{0.25f, -0.5f, muscle2, 0.5f, 1.5f, 0.5f, 1.0f, muscle2,
                       1.0f,  0.75f, 0.75f,   0.0f, air,  1.5f, 1.5f};
-  const Body body = body_of(genome, "size = [3, 1, 1]\nedge = 0.5\nphase_range = 1.0\nsize_range = 0.5");
+  const auto encoding = make<Encoding>("voxel", "size = [3, 1, 1]\nedge = 0.5\nphase_range = 1.0\nsize_range = 0.5");
+  EXPECT_THAT(encoding->spring_memory(), ::testing::ElementsAre("growth", "turn"));
+  const Blueprint blueprint = decoded(*encoding, genome);
+  const Body& body = blueprint.body;
   ASSERT_EQ(body.springs.size(), 50u);
+  ASSERT_EQ(blueprint.spring_memory.at("growth").size(), 50u);
+  ASSERT_EQ(blueprint.spring_memory.at("turn").size(), 50u);
   const double pi = 3.14159265358979323846;
-  for (const Spring& spring : body.springs) {
+  for (std::size_t s = 0; s < 50; ++s) {
+    const Spring& spring = body.springs[s];
+    const double growth = blueprint.spring_memory.at("growth")[s], turn = blueprint.spring_memory.at("turn")[s];
     const Vec3 a = body.masses[spring.a].rest, b = body.masses[spring.b].rest;
     const double x = (a.x + b.x) / 2 + 0.75;
     const double start = x < 0.49 ? 0.5 : x < 0.51 ? 0.75 : 1, end = x < 0.49 ? 1.5 : x < 0.51 ? 1.125 : 0.75;
     EXPECT_NEAR(spring.rest_length, start * norm(b - a), 1e-12);
-    EXPECT_NEAR(spring.rest_length * spring.growth, end * norm(b - a), 1e-6);
+    EXPECT_NEAR(spring.rest_length * (1 + growth), end * norm(b - a), 1e-6);
     const double birth = x < 0.49 ? 0.25 : x < 0.51 ? 0.375 : 0.5, last = x < 0.49 ? -0.5 : x < 0.51 ? 0.25 : 1;
     EXPECT_NEAR(body.materials[spring.material].phase, pi + 2 * pi * birth, 1e-9) << "muscle2 has the phase pi";
-    EXPECT_NEAR(spring.phase_growth, 2 * pi * (last - birth), 1e-5) << "in turns";
+    EXPECT_NEAR(turn, 2 * pi * (last - birth), 1e-5) << "in turns";
   }
 }
 
@@ -374,23 +451,24 @@ TEST(Voxel, WithoutGrowthThereIsOneGeneForEachSizeAndPhase) {
   const Layout layout = encoding->layout(context());
   EXPECT_EQ(layout.first_size(), 3u);
   EXPECT_THAT(layout.types[0].gene_names, ::testing::ElementsAre("phase at birth", "material", "size at birth"));
-  EXPECT_FALSE(encoding->sets_growth());
-  for (const Spring& spring : decoded(*encoding, {0.25f, muscle, 1.5f}).body.springs) {
-    EXPECT_EQ(spring.growth, 1);
-    EXPECT_EQ(spring.phase_growth, 0);
-  }
+  EXPECT_THAT(encoding->spring_memory(), ::testing::IsEmpty());
+  const Blueprint blueprint = decoded(*encoding, {0.25f, muscle, 1.5f});
+  EXPECT_EQ(blueprint.body.springs.size(), 28u);
+  EXPECT_TRUE(blueprint.spring_memory.empty());
 }
 
 TEST(Voxel, PassiveSpringsHaveNoPhase) {
   const auto encoding = make<Encoding>("voxel", "size = [1, 1, 1]\nphase_range = 1.0");
-  EXPECT_TRUE(encoding->sets_growth());
-  const Body body = decoded(*encoding, {0.25f, 1.0f, bone}).body;
-  EXPECT_EQ(body.materials.size(), context().materials.size());
-  for (const Spring& spring : body.springs) EXPECT_EQ(spring.phase_growth, 0);
+  EXPECT_THAT(encoding->spring_memory(), ::testing::ElementsAre("turn"));
+  const Blueprint blueprint = decoded(*encoding, {0.25f, 1.0f, bone});
+  EXPECT_EQ(blueprint.body.materials.size(), context().materials.size());
+  ASSERT_EQ(blueprint.spring_memory.size(), 1u);
+  EXPECT_EQ(blueprint.spring_memory.at("turn"), std::vector(blueprint.body.springs.size(), 0.0));
 }
 
 /// How many properties of a body's springs differ from those of their mirror images: of material and size, of phases.
-std::pair<int, int> asymmetries(const Body& body) {
+std::pair<int, int> asymmetries(const Blueprint& blueprint) {
+  const Body& body = blueprint.body;
   const auto ends_of = [&](const Spring& spring, double side) {
     std::set<std::vector<long>> ends;
     for (const std::uint32_t end : {spring.a, spring.b}) {
@@ -399,16 +477,22 @@ std::pair<int, int> asymmetries(const Body& body) {
     }
     return ends;
   };
-  std::map<std::set<std::vector<long>>, const Spring*> by_ends;
-  for (const Spring& spring : body.springs) by_ends[ends_of(spring, 1)] = &spring;
+  std::map<std::set<std::vector<long>>, std::size_t> by_ends;
+  for (std::size_t s = 0; s < body.springs.size(); ++s) by_ends[ends_of(body.springs[s], 1)] = s;
+  const auto remembered = [&](const char* name, std::size_t spring) {
+    const auto found = blueprint.spring_memory.find(name);
+    return found == blueprint.spring_memory.end() ? 0 : found->second.at(spring);
+  };
   const auto differ = [](double a, double b) { return std::abs(a - b) > 1e-5; };
   std::pair<int, int> differences{0, 0};
-  for (const Spring& one : body.springs) {
-    const Spring& image = *by_ends.at(ends_of(one, -1));
+  for (std::size_t s = 0; s < body.springs.size(); ++s) {
+    const std::size_t mirrored = by_ends.at(ends_of(body.springs[s], -1));
+    const Spring &one = body.springs[s], &image = body.springs[mirrored];
+    const auto differ_by = [&](const char* name) { return differ(remembered(name, s), remembered(name, mirrored)); };
     const Material &own = body.materials[one.material], &other = body.materials[image.material];
     differences.first += differ(own.stiffness, other.stiffness) + differ(own.amplitude, other.amplitude) +
-                         differ(one.rest_length, image.rest_length) + differ(one.growth, image.growth);
-    differences.second += differ(own.phase, other.phase) + differ(one.phase_growth, image.phase_growth);
+                         differ(one.rest_length, image.rest_length) + differ_by("growth");
+    differences.second += differ(own.phase, other.phase) + differ_by("turn");
   }
   return differences;
 }
@@ -418,7 +502,7 @@ TEST(Voxel, MirroredGenesMakeSymmetricBodies) {
   const auto body = [&](const std::string& mirrored) {
     const char* toml =
         "size = [5, 2, 2]\nmaterials = ['bone', 'muscle', 'tissue']\nsize_range = 0.5\nphase_range = 1.0\nmirrored = ";
-    return random_body("voxel", toml + ("'" + mirrored + "'"), rng).body;
+    return random_body("voxel", toml + ("'" + mirrored + "'"), rng);
   };
   for (int i = 0; i < 3; ++i) {
     EXPECT_GT(asymmetries(body("nothing")).first, 0);
@@ -447,7 +531,7 @@ TEST(Direct, MirroredSpringsShareAGene) {
   EXPECT_GT(layout.first_size(), all / 2) << "springs that are their own image have a gene, too";
   EXPECT_LT(layout.first_size(), 2 * all / 3);
   Rng rng = stream(8);
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(asymmetries(random_body("direct", mirrored, rng).body), (std::pair{0, 0}));
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(asymmetries(random_body("direct", mirrored, rng)), (std::pair{0, 0}));
 }
 
 TEST(Direct, EverySpringHasAGene) {

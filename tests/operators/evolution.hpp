@@ -30,7 +30,7 @@ struct Table {
   std::vector<Individual> rows = {};
   std::vector<Objective> descriptors = {};
   Layout layout = {};
-  std::vector<std::byte> memory = {};
+  SelectionMemory memory = {};
 
   /// Calls `use` with what the operator sees.
   template <class Use>
@@ -56,18 +56,17 @@ struct Table {
     return use(SelectionContext{candidates, objectives, descriptors, cases, layout, 1, memory});
   }
 
-  Survival survive(const Selection& selection, std::uint32_t population, std::uint64_t seed = 1) const {
+  Survival survivors(const Selection& selection, std::uint32_t population, std::uint64_t seed = 1) const {
     Rng rng = stream(seed);
-    return see([&](const SelectionContext& context) { return selection.survive(context, population, rng); });
+    return see([&](const SelectionContext& context) { return selection.survivors(context, population, rng); });
   }
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> couples(const Selection& selection, std::uint32_t count,
-                                                               std::uint64_t seed = 1) const {
+  std::vector<Couple> parents(const Selection& selection, std::uint32_t count, std::uint64_t seed = 1) const {
     Rng rng = stream(seed);
-    return see([&](const SelectionContext& context) { return selection.couples(context, count, rng); });
+    return see([&](const SelectionContext& context) { return selection.parents(context, count, rng); });
   }
   std::vector<Child> children(const Selection& selection, std::uint32_t count, std::uint64_t seed = 1) const {
     Rng rng = stream(seed);
-    return see([&](const SelectionContext& context) { return selection.children(context, count, rng); });
+    return see([&](const SelectionContext& context) { return selection.children(context, count, rng).children; });
   }
 
   /// Keeps the survivors, notes what is to be noted, and remembers.
@@ -83,7 +82,7 @@ struct Table {
     }
     std::sort(living.begin(), living.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
     rows = std::move(living);
-    memory = survival.memory;
+    if (survival.memory) memory = *survival.memory;
   }
 };
 
@@ -121,7 +120,7 @@ class Evolution {
     }
     for (Individual& newborn : newborns_) table.rows.push_back(std::move(newborn));
     newborns_.clear();
-    table.keep(selection_, table.survive(selection_, population, seed_ * 100'000 + generation_));
+    table.keep(selection_, table.survivors(selection_, population, seed_ * 100'000 + generation_));
   }
   void run(int generations, std::uint32_t population, std::uint32_t children) {
     for (int i = 0; i < generations; ++i) step(population, children);
@@ -139,17 +138,18 @@ class Evolution {
 
  private:
   std::vector<Child> bred(std::uint32_t count, Rng& rng) const {
-    if (selection_.traits().makes_children)
-      return table.see([&](const SelectionContext& context) { return selection_.children(context, count, rng); });
+    if (selection_.overrides.children)
+      return table.see(
+          [&](const SelectionContext& context) { return selection_.children(context, count, rng).children; });
     std::vector<Child> children;
     if (table.rows.empty()) {
       for (std::uint32_t i = 0; i < count; ++i) children.push_back({random_genome(table.layout, rng)});
       return children;
     }
     const auto couples =
-        table.see([&](const SelectionContext& context) { return selection_.couples(context, count, rng); });
+        table.see([&](const SelectionContext& context) { return selection_.parents(context, count, rng); });
     for (const auto& [parent, mate] : couples) {
-      Genome genome = crossover_->cross({table.rows[parent].genome, table.rows[mate].genome}, table.layout, rng);
+      Genome genome = crossover_->cross({table.rows[parent].genome, table.rows[mate].genome}, {table.layout}, rng);
       for (std::size_t gene = 0; gene < genome.size(); ++gene) {
         const GeneSpec& spec = table.layout.gene(genome, gene);
         if (!rng.chance(1.0 / static_cast<double>(genome.size()))) continue;

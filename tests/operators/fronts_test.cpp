@@ -75,7 +75,7 @@ TEST(Nsga2, WholeLayersSurvive) {
       table.rows.push_back({.scores = points.back(), .id = i});
     }
     const auto layer = pareto_layers(points);
-    const auto living = table.survive(*selection, 30).rows;
+    const auto living = table.survivors(*selection, 30).rows;
     ASSERT_EQ(living.size(), 30u);
     std::uint32_t deepest = 0;
     for (const std::uint32_t row : living) deepest = std::max(deepest, layer[row]);
@@ -90,7 +90,7 @@ std::vector<double> shares(const Table& table) {
   constexpr int seeds = 400, couples = 40;
   std::vector<double> share(table.rows.size(), 0);
   for (std::uint64_t seed = 0; seed < seeds; ++seed)
-    for (const auto& [parent, mate] : table.couples(*selection, couples, seed))
+    for (const auto& [parent, mate] : table.parents(*selection, couples, seed))
       share[parent] += 1.0 / (seeds * couples);
   return share;
 }
@@ -117,7 +117,7 @@ TEST(Nsga2, TheLeastInfeasibleBreedAndSurviveAmongTheFailed) {
   EXPECT_NEAR(share[2], 3 / 9.0, 0.3 / 9);
   EXPECT_NEAR(share[0], 1 / 9.0, 0.3 / 9);
   const Table table{.rows = {{.violation = 3}, {.violation = 1}, {.violation = 2}, {.scores = {1, 1}}}};
-  EXPECT_THAT(table.survive(*make<Selection>("nsga2"), 2).rows, ::testing::UnorderedElementsAre(3, 1));
+  EXPECT_THAT(table.survivors(*make<Selection>("nsga2"), 2).rows, ::testing::UnorderedElementsAre(3, 1));
 }
 
 }  // namespace

@@ -30,8 +30,8 @@ TEST(Hebbian, ThreeSpringsFollowTheEquation) {
   const Life life = chain({2, 1, -3}, {3, 3, 6});
   const Edits edits = develop(*devo, life, 1);
   // pull relative to its mean: 2, 1, 0; work: 3/4, 3/4, 3/2; hence x = 3/2, 3/4, 0 and Y = 3/4 for all
-  EXPECT_THAT(edits.spring_memory, ElementsAre(1.5, 0.75, 0));
-  EXPECT_THAT(edits.causes.changed_springs, ElementsAre(1, 0.5, 0));
+  EXPECT_THAT(remembered(edits.spring_memory), ElementsAre(1.5, 0.75, 0));
+  EXPECT_THAT(causes(edits.changed_springs), ElementsAre(1, 0.5, 0));
   // 10,000, 5000 and 4000 N/m grow by 1 + rate H and are scaled back
   const double scale = 19000.0 / (11000 + 5250 + 4000);
   const Body before = life.living.body, body = after(life, edits).body;
@@ -46,11 +46,12 @@ TEST(Hebbian, ThreeSpringsFollowTheEquation) {
 TEST(Hebbian, ActivityIsARunningMeanInWhichRecordsThatAreNotFiniteCountAsNone) {
   const auto devo = make<Devo>("hebbian", "latest = 0.25");
   Life life = chain({1, 1, 1}, {1, 2, 3});
-  life.spring_memory = {4, 0, 2};
-  EXPECT_THAT(develop(*devo, life, 1).spring_memory,
+  life.spring_memory() = {4, 0, 2};
+  EXPECT_THAT(remembered(develop(*devo, life, 1).spring_memory),
               ElementsAre(0.75 * 4 + 0.25 * 0.5, 0.25 * 1, 0.75 * 2 + 0.25 * 1.5));
   life = chain({NAN, 1, 1}, {1, 1, INFINITY});
-  EXPECT_THAT(develop(*make<Devo>("hebbian", "latest = 1.0"), life, 1).spring_memory, ElementsAre(0, 2.25, 0));
+  EXPECT_THAT(remembered(develop(*make<Devo>("hebbian", "latest = 1.0"), life, 1).spring_memory),
+              ElementsAre(0, 2.25, 0));
 }
 
 TEST(Hebbian, AnActiveSpringAloneChangesNothing) {
@@ -61,7 +62,7 @@ TEST(Hebbian, AnActiveSpringAloneChangesNothing) {
                            chain({1, 1, 0}, {0, 0, 1})}) {  // no spring does both
     const Edits edits = develop(*devo, life, 1);
     EXPECT_TRUE(edits.empty());
-    EXPECT_EQ(edits.spring_memory.size(), 3u) << "what it remembers is kept up all the same";
+    EXPECT_EQ(remembered(edits.spring_memory).size(), 3u) << "what it remembers is kept up all the same";
   }
   EXPECT_TRUE(develop(*make<Devo>("hebbian", "rate = 0.0"), chain({1, 1, 1}, {1, 1, 1}), 1).empty());
 }
@@ -70,9 +71,7 @@ TEST(Hebbian, TheSumOfAllStiffnessesStaysTheSame) {
   const auto devo = make<Devo>("hebbian", "rate = 0.5\nlow = 0.001\nhigh = 1e9");
   Life life = chain({2, 1, 3}, {1, 4, 2});
   for (std::uint64_t application = 0; application < 60; ++application) {
-    const Edits edits = develop(*devo, life, application);
-    life.living = after(life, edits);
-    life.spring_memory = edits.spring_memory;
+    life.living = after(life, develop(*devo, life, application));
     const std::vector<double> all = stiffnesses(life.living.body);
     EXPECT_NEAR(all[0] + all[1] + all[2], 19000, 1e-6);
   }

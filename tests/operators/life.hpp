@@ -2,14 +2,22 @@
 #pragma once
 
 #include <cmath>
+#include <initializer_list>
 #include <set>
+#include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "life/edits.hpp"
 #include "support.hpp"
+#include "support/edits.hpp"
 
 namespace evodevo::test {
+
+using testing::causes;
+using testing::indices;
+using testing::remembered;
 
 /// Whether draws are inherited in the lives of the test that runs; see TEST_BOTH_DRAWS.
 inline bool draws_are_inherited = false;
@@ -41,9 +49,16 @@ struct Life {
   Layout layout;
   Genome own;                                      ///< genes of the operator
   std::vector<double> contact, age, degree, load;  ///< [masses]
-  std::vector<double> mass_memory, spring_memory;  ///< what the operator remembers
-  std::size_t mass_width = 0, spring_width = 0;    ///< numbers that it remembers about each mass and each spring
+  std::size_t op = 0;                              ///< index of the operator into `living.memory`
   std::uint64_t draw_seed = 0;
+
+  /// What the operator remembers. The number of values for each item is that of the operator that develops the life.
+  OperatorMemory& memory() {
+    if (living.memory.size() <= op) living.memory.resize(op + 1);
+    return living.memory[op];
+  }
+  std::vector<double>& mass_memory() { return memory().masses.values; }
+  std::vector<double>& spring_memory() { return memory().springs.values; }
 
   DevoContext context() const {
     DevoContext context{living.body, living.state, 3,      100,    application, applications, time,
@@ -53,8 +68,11 @@ struct Life {
     context.age.show(age);
     context.degree.show(degree);
     context.load.show(load);
-    context.mass_memory = Memory(mass_memory, mass_width, "mass");
-    context.spring_memory = Memory(spring_memory, spring_width, "spring");
+    if (op < living.memory.size()) {
+      context.mass_memory = living.memory[op].masses.view("mass");
+      context.spring_memory = living.memory[op].springs.view("spring");
+      context.body_memory = {living.memory[op].body, "body"};
+    }
     context.first_time = first_time;
     context.last_time = last_time;
     context.identities = living.numbers.identities();
@@ -71,10 +89,7 @@ struct Life {
       Rng rng = stream(17);
       own = devo.random(devo.layout(test::context()), rng);
     }
-    mass_width = devo.mass_memory().size();
-    spring_width = devo.spring_memory().size();
-    mass_memory.resize(mass_width * body.masses.size());
-    spring_memory.resize(spring_width * body.springs.size());
+    remember_as_many({devo.mass_memory(), devo.spring_memory(), devo.body_memory()});
     living.tension.resize(body.springs.size());
     living.muscle_work.resize(body.springs.size());
     contact.resize(body.masses.size());
@@ -88,6 +103,17 @@ struct Life {
       }
   }
 
+  /// Lets the operator remember a number for each of these names, which is 0 unless it is given.
+  void remember_as_many(const MemoryNames& names) {
+    const auto resize = [](ItemMemory& of_items, std::size_t width, std::size_t items) {
+      of_items.width = width;
+      of_items.values.resize(width * items);
+    };
+    resize(memory().masses, names.masses.size(), living.body.masses.size());
+    resize(memory().springs, names.springs.size(), living.body.springs.size());
+    memory().body.resize(names.body.size());
+  }
+
   void add_mass(Vec3 rest, std::int32_t material) {
     living.body.masses.push_back({rest, 0.2, material, 0});
     // its current position differs from its rest position
@@ -96,7 +122,7 @@ struct Life {
   }
   void add_spring(std::uint32_t a, std::uint32_t b, std::uint32_t material, double stress) {
     const double length = norm(living.body.masses[a].rest - living.body.masses[b].rest);
-    living.body.springs.push_back({a, b, length, material, 1, length});
+    living.body.springs.push_back({a, b, length, material, length});
     living.stress.push_back(stress);
   }
 };
@@ -135,7 +161,7 @@ inline std::set<Pair> joined(const Body& body) {
 inline Edits develop(const Devo& devo, Life life, std::uint64_t seed) {
   life.complete_for(devo);
   life.draw_seed = mixed(seed, 1);
-  Edits edits;
+  Edits edits(life.living.body);
   Rng rng = stream(seed);
   devo.develop(life.context(), edits, rng);
   return edits;
@@ -143,26 +169,44 @@ inline Edits develop(const Devo& devo, Life life, std::uint64_t seed) {
 
 /// Returns all values of the edits in one list, for comparisons.
 inline std::vector<double> digest(const Edits& edits) {
-  std::vector<double> digest(edits.removed_springs.begin(), edits.removed_springs.end());
-  if (edits.growth) digest.insert(digest.end(), {edits.growth->from, edits.growth->to, edits.growth->whole});
-  digest.insert(digest.end(), edits.removed_masses.begin(), edits.removed_masses.end());
+  std::vector<double> digest;
+  const auto append = [&](std::initializer_list<double> values) { digest.insert(digest.end(), values); };
+  const auto cause = [](const auto& edit) { return std::isnan(edit.cause) ? -1e300 : edit.cause; };
+  for (const std::vector<Removal>* removals : {&edits.removed_springs, &edits.removed_masses})
+    for (const Removal& removal : *removals) append({double(removal.index), cause(removal)});
+  if (const auto& s = edits.scaling) append({double(s->number), s->from, s->to, s->whole});
   for (const NewMass& m : edits.new_masses)
-    digest.insert(digest.end(), {m.position.x, m.position.y, m.position.z, m.mass, static_cast<double>(m.material)});
+    append({m.position.x, m.position.y, m.position.z, m.mass.value_or(-1), double(m.material),
+            m.mother ? double(*m.mother) : -1.0, cause(m)});
   for (const NewSpring& s : edits.new_springs)
-    digest.insert(digest.end(), {double(s.a), double(s.b), s.material.stiffness, s.material.phase, s.stiffness_factor,
-                                 s.phase_growth});
+    append({double(s.a), double(s.b), s.material.stiffness, s.material.phase, s.stiffness_factor,
+            s.like ? double(*s.like) : -1.0, cause(s)});
   for (const ChangedSpring& c : edits.changed_springs)
-    digest.insert(digest.end(), {double(c.spring), c.rest_length.value_or(-1), c.stiffness_factor.value_or(-1),
-                                 c.material.value_or(Material{}).stiffness, c.material.value_or(Material{}).amplitude});
-  digest.insert(digest.end(), edits.mass_memory.begin(), edits.mass_memory.end());
-  digest.insert(digest.end(), edits.spring_memory.begin(), edits.spring_memory.end());
+    append({double(c.spring), c.rest_length.value_or(-1), c.stiffness_factor.value_or(-1),
+            c.material.value_or(Material{}).stiffness, c.material.value_or(Material{}).amplitude, cause(c)});
+  for (const MemoryEdits* memory : {&edits.mass_memory, &edits.spring_memory}) {
+    digest.insert(digest.end(), memory->items.begin(), memory->items.end());
+    digest.insert(digest.end(), memory->values.begin(), memory->values.end());
+  }
+  if (edits.body_memory) digest.insert(digest.end(), edits.body_memory->begin(), edits.body_memory->end());
   return digest;
 }
 
-/// Applies the edits with the host's checks; returns the changed body.
+/// Applies the edits with the host's checks; returns the changed body, with what the operator remembers from now on.
 inline LivingBody after(const Life& life, const Edits& edits) {
   Life changed = life;
-  apply(resolved(edits, changed.context()), changed.living);
+  const auto names = [](const MemoryEdits& given, const ItemMemory& memory, std::size_t items) {
+    const std::size_t before = items > 0 ? memory.values.size() / items : memory.width;
+    return std::vector<std::string>(given.counts.empty() ? before : given.counts.front(), "name");
+  };
+  const Body& body = changed.living.body;
+  OperatorMemory& memory = changed.memory();
+  const MemoryNames all{names(edits.mass_memory, memory.masses, body.masses.size()),
+                        names(edits.spring_memory, memory.springs, body.springs.size()),
+                        std::vector<std::string>(edits.body_memory ? edits.body_memory->size() : memory.body.size())};
+  changed.remember_as_many(all);
+  remember(edits, all, body, memory);
+  apply(resolved(edits, changed.context()), changed.living, static_cast<std::uint32_t>(changed.op));
   return changed.living;
 }
 

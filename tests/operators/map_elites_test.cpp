@@ -1,7 +1,6 @@
 // MAP-Elites with both kinds of cells.
 #include <ranges>
 
-#include "evodevo/helpers/selection/memory.hpp"
 #include "evodevo/helpers/selection/niches.hpp"
 #include "evolution.hpp"
 
@@ -45,9 +44,10 @@ TEST(MapElites, TheBestOfEachCellOfAGridSurvives) {
     const auto index = [](double share) { return std::min(3, std::max(0, static_cast<int>(std::floor(4 * share)))); };
     const auto best = best_rows(table, [&](double x, double y) { return 4 * index(x) + index(y); });
     const auto expected = std::views::values(best);
-    const Survival survival = table.survive(*selection, 100);
+    const Survival survival = table.survivors(*selection, 100);
     EXPECT_THAT(survival.rows, ::testing::UnorderedElementsAreArray(expected.begin(), expected.end()));
-    EXPECT_TRUE(survival.memory.empty());
+    EXPECT_FALSE(survival.memory);
+    EXPECT_TRUE(selection->memory().empty());
     const auto ok = std::ranges::count_if(table.rows, [](const Individual& one) { return !one.scores.empty(); });
     EXPECT_EQ(std::ssize(survival.notes), ok);
     for (const Note& note : survival.notes)
@@ -56,19 +56,18 @@ TEST(MapElites, TheBestOfEachCellOfAGridSurvives) {
 }
 
 TEST(MapElites, AMemoryThatIsNotItsOwnIsRefused) {
-  const auto selection = make<Selection>("map-elites", "cells = \"centroidal\"\ncount = 12");
+  const auto selection = make<Selection>("map-elites", "cells = \"centroidal\"\ncount = 2");
   Table table = random_table(1, 8);
-  const auto survive_with = [&](const std::vector<Coordinates>& centres) {
-    MemoryWriter writer;
-    writer.write(centres);
-    table.memory = writer.bytes();
-    table.survive(*selection, 8);
+  const auto survive_with = [&](const std::vector<double>& centres) {
+    table.memory.lists = {{"centres", centres}};
+    table.survivors(*selection, 8);
   };
-  const std::vector<Coordinates> two = {{0.5, 0.5}, {0.2, 0.1}};
+  const std::vector<double> two = {0.5, 0.5, 0.2, 0.1};
   EXPECT_NO_THROW(survive_with(two));
   EXPECT_THROW(survive_with({}), std::runtime_error);
-  EXPECT_THROW(survive_with({{0.5, 0.5}, {0.2}}), std::runtime_error);
-  EXPECT_THROW(survive_with({{0.5, 1e200}}), std::runtime_error) << "its distances are not finite";
+  EXPECT_THROW(survive_with({0.5, 0.5, 0.2}), std::runtime_error);
+  EXPECT_THROW(survive_with({0.5, 0.5}), std::runtime_error) << "of only one";
+  EXPECT_THROW(survive_with({0.5, 0.5, 0.2, 1e200}), std::runtime_error) << "its distances are not finite";
   table.descriptors.pop_back();
   EXPECT_THAT([&] { survive_with(two); },
               ::testing::ThrowsMessage<std::runtime_error>(::testing::HasSubstr("1 descriptors")));
@@ -77,10 +76,9 @@ TEST(MapElites, AMemoryThatIsNotItsOwnIsRefused) {
 TEST(MapElites, TheBestOfTheCellWithTheNearestCentreSurvives) {
   const auto selection = make<Selection>("map-elites", "cells = \"centroidal\"\ncount = 12");
   Table table = random_table(1, 80);
-  const Survival first = table.survive(*selection, 100);
-  MemoryReader reader(first.memory);
-  const auto centres = reader.read_lists<double>();
-  ASSERT_EQ(centres.size(), 12u);
+  const Survival first = table.survivors(*selection, 100);
+  ASSERT_TRUE(first.memory);
+  const auto centres = places_in(*first.memory, "centres", 12, 2);
   const auto best = best_rows(table, [&](double x, double y) {
     const auto distance = [&](const Coordinates& centre) { return std::hypot(centre[0] - x, centre[1] - y); };
     return static_cast<std::size_t>(std::ranges::min_element(centres, {}, distance) - centres.begin());
@@ -89,10 +87,10 @@ TEST(MapElites, TheBestOfTheCellWithTheNearestCentreSurvives) {
   EXPECT_THAT(first.rows, ::testing::UnorderedElementsAreArray(expected.begin(), expected.end()));
 
   const auto other = make<Selection>("map-elites", "cells = \"centroidal\"\ncount = 12");
-  EXPECT_EQ(table.survive(*other, 100, 2).memory, first.memory) << "the cells are the same in all runs";
-  table.memory = first.memory;
-  const Survival second = table.survive(*selection, 100, 2);
-  EXPECT_EQ(second.memory, first.memory) << "the cells stay";
+  EXPECT_EQ(table.survivors(*other, 100, 2).memory, first.memory) << "the cells are the same in all runs";
+  table.memory = *first.memory;
+  const Survival second = table.survivors(*selection, 100, 2);
+  EXPECT_FALSE(second.memory) << "the cells stay";
   EXPECT_EQ(second.rows, first.rows);
 }
 
@@ -103,9 +101,9 @@ TEST(MapElites, AllBreedAlikeButTheWorstElitesDieIfThereAreTooFewPlaces) {
                              {.scores = {8}, .descriptors = {1.8, 0}},
                              {.scores = {5}, .descriptors = {0.6, 0}}},
                     .descriptors = ranges};
-  EXPECT_THAT(table.survive(*selection, 2).rows, ::testing::ElementsAre(1, 3));
+  EXPECT_THAT(table.survivors(*selection, 2).rows, ::testing::ElementsAre(1, 3));
   std::vector<int> times(4, 0);
-  for (const auto& [parent, mate] : table.couples(*selection, 4000)) ++times.at(parent);
+  for (const auto& [parent, mate] : table.parents(*selection, 4000)) ++times.at(parent);
   for (const int count : times) EXPECT_NEAR(count, 1000, 140);  // five standard deviations
 }
 
@@ -117,9 +115,9 @@ TEST(MapElites, WhatLiesFarOutsideBelongsToTheNearestCellAndTheFailedLiveWhereAl
                                {.scores = {3}, .descriptors = {1.7e308, 0.1}, .id = 2},
                                {.scores = {4}, .descriptors = {-1.7e308, 0.1}, .id = 3}},
                       .descriptors = ranges};
-    EXPECT_THAT(table.survive(*selection, 4).rows, ::testing::ElementsAre(3, 2)) << cells;
+    EXPECT_THAT(table.survivors(*selection, 4).rows, ::testing::ElementsAre(3, 2)) << cells;
     const Table failed{.rows = {{}, {}, {}}, .descriptors = ranges};
-    EXPECT_THAT(failed.survive(*selection, 2).rows, ::testing::SizeIs(2)) << cells;
+    EXPECT_THAT(failed.survivors(*selection, 2).rows, ::testing::SizeIs(2)) << cells;
   }
 }
 

@@ -27,7 +27,7 @@ TEST_BOTH_DRAWS(MassActs, StiffensOrSoftensTheSpringsOfAMass) {
       const ChangedSpring& change = edits.changed_springs[next];
       EXPECT_EQ(change.spring, s);
       EXPECT_NEAR(new_stiffness(body, change), body.stiffness(body.springs[s]) * std::exp(0.2 * output), 1e-9);
-      EXPECT_NEAR(edits.causes.changed_springs.at(next++), output, 1e-12);
+      EXPECT_NEAR(edits.changed_springs[next++].cause, output, 1e-12);
     }
     EXPECT_EQ(next, edits.changed_springs.size());
   }
@@ -53,10 +53,15 @@ TEST_BOTH_DRAWS(MassActs, DaughtersLieWhereThereIsRoom) {
   ASSERT_EQ(edits.new_masses.size(), 2u);
   EXPECT_EQ(edits.new_masses[0].position, (Vec3{0, -0.25, 1}));
   EXPECT_EQ(edits.new_masses[1].position, (Vec3{0, 2.25, 1}));
-  EXPECT_EQ(edits.new_masses[0].mass, 0.35);
+  EXPECT_FALSE(edits.new_masses[0].mass) << "that of the context";
   EXPECT_EQ(joined(after(life, edits).body),
             (std::set<Pair>{{0, 1}, {1, 2}, {3, 4}, {4, 5}, {0, 6}, {1, 6}, {2, 7}, {1, 7}}))
       << "to the mother and her partner";
+  EXPECT_EQ(after(life, edits).body.masses.back().mass, 0.35);
+  for (const std::uint32_t daughter : {0, 1}) {
+    EXPECT_EQ(edits.new_masses[daughter].mother, daughter == 0 ? 0u : 2u);
+    EXPECT_NEAR(edits.new_masses[daughter].cause, std::tanh(daughter == 0 ? 1 : 0.5), 1e-12);
+  }
 
   // amid her partners the direction is random, and the floor holds
   life.contact = {0, 1, 0, 0, 0, 0};
@@ -93,7 +98,7 @@ TEST_BOTH_DRAWS(MassActs, CrowdedDaughtersAreNotBorn) {
     life.own = genes(*devo, {{"divide", "contact", 1}});
     const Edits edits = develop(*devo, life, 1);
     EXPECT_EQ(edits.new_masses.size(), born);
-    EXPECT_EQ(edits.mass_memory.size(), 2 * (6 + born));
+    EXPECT_EQ(remembered(edits.mass_memory).size(), 2 * (6 + born));
   }
 }
 
@@ -142,14 +147,13 @@ TEST_BOTH_DRAWS(MassActs, ReachesForTheNearestMassWithRoom) {
   Life life = life_of_masses(5, false);
   for (std::uint32_t i = 0; i < 5; ++i) life.living.state.position[i] = {double(i), 0, 1};
   for (const auto& [a, b] : {Pair{0, 1}, {2, 3}, {2, 4}}) life.add_spring(a, b, bone, 1);
-  life.living.body.springs[0].phase_growth = 1.5f;
   life.own = genes(*devo, {{"reach", "contact", 1}});
   life.contact = {1, 0, 0, 0, 0};
   const Edits edits = develop(*devo, life, 1);  // 1 is joined already, and 2 is full
   ASSERT_EQ(edits.new_springs.size(), 1u);
   EXPECT_EQ(ordered(edits.new_springs[0].a, edits.new_springs[0].b), Pair(0, 3));
   EXPECT_EQ(edits.new_springs[0].material.stiffness, 10000);
-  EXPECT_EQ(edits.new_springs[0].phase_growth, 1.5f) << "like the spring whose material it takes over";
+  EXPECT_EQ(edits.new_springs[0].like, 0u) << "like the spring whose material it takes over";
 }
 
 TEST_BOTH_DRAWS(MassActs, OnesThatAreHeldBackGiveTheirTurnsToOthers) {
@@ -158,7 +162,7 @@ TEST_BOTH_DRAWS(MassActs, OnesThatAreHeldBackGiveTheirTurnsToOthers) {
   life.add_spring(3, 5, bone, 0.5);
   life.own = genes(*devo, {{"let go", "contact", 1}});
   life.contact = {0, 1, 0, 0.5, 0, 0};
-  EXPECT_THAT(develop(*devo, life, 1).removed_springs, ::testing::ElementsAre(4)) << "mass 1 wanted it most";
+  EXPECT_THAT(indices(develop(*devo, life, 1).removed_springs), ::testing::ElementsAre(4)) << "mass 1 wanted it most";
 }
 
 TEST_BOTH_DRAWS(MassActs, DegenerateBodiesStayAsTheyAre) {

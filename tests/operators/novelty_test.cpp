@@ -1,5 +1,4 @@
 // Novelty search and its archive.
-#include "evodevo/helpers/selection/memory.hpp"
 #include "evolution.hpp"
 
 namespace evodevo::test::EVODEVO_FILE {
@@ -20,13 +19,9 @@ Table at(const std::vector<double>& places) {
   return table;
 }
 
-std::vector<double> archived(const std::vector<std::byte>& memory) {
-  MemoryReader reader(memory);
-  std::vector<double> places;
-  reader.read_list<std::uint32_t>();  // ids
-  reader.read_list<double>();         // scores
-  for (const auto& place : reader.read_lists<double>()) places.push_back(10 * place.at(0));
-  reader.finish();
+std::vector<double> archived(const std::optional<SelectionMemory>& memory) {
+  std::vector<double> places = memory.value().list("places");
+  for (double& place : places) place *= 10;
   std::sort(places.begin(), places.end());
   return places;
 }
@@ -36,7 +31,7 @@ TEST(NoveltySearch, TheMostDistantSurviveWhateverTheirScores) {
   EXPECT_FALSE(selection->traits().is_elitist);
   Table table = at({0, 1, 1.5, 2, 9});
   table.rows[2].scores = {1000};
-  const Survival survival = table.survive(*selection, 2);
+  const Survival survival = table.survivors(*selection, 2);
   EXPECT_THAT(survival.rows, ::testing::UnorderedElementsAre(0, 4));
   std::map<std::uint32_t, double> noted;
   for (const Note& note : survival.notes) noted[note.row] = note.value;
@@ -50,12 +45,8 @@ TEST(NoveltySearch, AMemoryOfImpossiblePlacesIsRefused) {
   const auto selection = make<Selection>("novelty", "neighbours = 1\narchived = 100");
   Table table = at({9, 9.1});
   const auto survive_with = [&](const std::vector<double>& place) {
-    MemoryWriter writer;
-    writer.write(std::vector<std::uint32_t>{70});
-    writer.write(std::vector<double>{0});
-    writer.write(std::vector<std::vector<double>>{place});
-    table.memory = writer.bytes();
-    table.survive(*selection, 2);
+    table.memory.lists = {{"ids", {70}}, {"scores", {0}}, {"places", place}};
+    table.survivors(*selection, 2);
   };
   EXPECT_NO_THROW(survive_with({0.9}));
   for (const std::vector<double>& place : {std::vector<double>{}, {0.9, 0.9}, {-1e200}})
@@ -66,11 +57,11 @@ TEST(NoveltySearch, AMemoryOfImpossiblePlacesIsRefused) {
 TEST(NoveltySearch, WhatIsInTheArchiveIsNotNovel) {
   const auto selection = make<Selection>("novelty", "neighbours = 1\narchived = 100");
   Table table = at({9, 9.1});
-  table.memory = table.survive(*selection, 2).memory;
+  table.memory = table.survivors(*selection, 2).memory.value();
   EXPECT_THAT(archived(table.memory), Pointwise(DoubleNear(1e-9), {9.0, 9.1}));
   table.rows = at({2, 3, 9}).rows;
   for (Individual& one : table.rows) one.id += 100;
-  EXPECT_THAT(table.survive(*selection, 2).rows, ::testing::UnorderedElementsAre(0, 1));
+  EXPECT_THAT(table.survivors(*selection, 2).rows, ::testing::UnorderedElementsAre(0, 1));
 }
 
 TEST(NoveltySearch, ThoseInTheArchiveWhoAreAliveCountOnce) {
@@ -78,9 +69,9 @@ TEST(NoveltySearch, ThoseInTheArchiveWhoAreAliveCountOnce) {
     const auto selection =
         make<Selection>("novelty", std::string("neighbours = 2\narchived = 100\nlocal_competition = ") + competition);
     Table table = at({1, 2, 4, 8});
-    const Survival first = table.survive(*selection, 2);
-    table.memory = first.memory;
-    const Survival second = table.survive(*selection, 2);
+    const Survival first = table.survivors(*selection, 2);
+    table.memory = first.memory.value();
+    const Survival second = table.survivors(*selection, 2);
     EXPECT_EQ(second.rows, first.rows);
     for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(second.notes.at(i).value, first.notes.at(i).value) << i;
   }
@@ -89,17 +80,17 @@ TEST(NoveltySearch, ThoseInTheArchiveWhoAreAliveCountOnce) {
 TEST(NoveltySearch, ForgetsThoseInTheArchiveWhoLoseTheirFitness) {
   const auto selection = make<Selection>("novelty", "neighbours = 1\narchived = 100");
   Table table = at({1, 2, 4, 8});
-  table.memory = table.survive(*selection, 4).memory;
+  table.memory = table.survivors(*selection, 4).memory.value();
   ASSERT_EQ(archived(table.memory).size(), 4u);
   for (Individual& one : table.rows) one.is_newborn = false;
   table.rows[1] = {.id = 1};
-  EXPECT_THAT(archived(table.survive(*selection, 4).memory), Pointwise(DoubleNear(1e-9), {1.0, 4.0, 8.0}));
+  EXPECT_THAT(archived(table.survivors(*selection, 4).memory), Pointwise(DoubleNear(1e-9), {1.0, 4.0, 8.0}));
 }
 
 TEST(NoveltySearch, BearsTheGreatestDescriptors) {
   const auto selection = make<Selection>("novelty", "neighbours = 1\narchived = 1");
   Table table = at({1e300, -1e308, 1.7e308, 1, 2});
-  const Survival survival = table.survive(*selection, 3);
+  const Survival survival = table.survivors(*selection, 3);
   EXPECT_THAT(survival.rows, ::testing::Contains(1));
   ASSERT_EQ(survival.notes.size(), 5u);
   for (const Note& note : survival.notes) EXPECT_TRUE(std::isfinite(note.value)) << note.row;
@@ -111,13 +102,13 @@ TEST(NoveltySearch, TheArchiveGrowsByRandomNewborns) {
   for (std::uint32_t i = 0; i < 4; ++i) table.rows[i].is_newborn = false;
   table.rows[7].scores.clear();
   table.rows[7].descriptors.clear();
-  const auto first = archived(table.survive(*selection, 4, 1).memory);
+  const auto first = archived(table.survivors(*selection, 4, 1).memory);
   ASSERT_EQ(first.size(), 3u);
   for (const double place : first) EXPECT_TRUE(place > 4.5 && place < 7.5) << place;
   table = at({1, 2, 3, 4, 5, 6, 7, 8});
-  EXPECT_NE(archived(table.survive(*selection, 4, 1).memory), archived(table.survive(*selection, 4, 2).memory));
+  EXPECT_NE(archived(table.survivors(*selection, 4, 1).memory), archived(table.survivors(*selection, 4, 2).memory));
   for (std::uint64_t generation = 1; generation <= 5; ++generation) {
-    table.memory = table.survive(*selection, 4, generation).memory;
+    table.memory = table.survivors(*selection, 4, generation).memory.value();
     EXPECT_EQ(archived(table.memory).size(), 3 * generation);
   }
 }
@@ -129,10 +120,10 @@ TEST(NoveltySearch, LocalCompetitionKeepsTheBestAmongNeighbours) {
   table.rows[4].scores = {3};
   table.rows[5].scores = {2};
   const auto alone = make<Selection>("novelty", "neighbours = 2\narchived = 0");
-  EXPECT_THAT(table.survive(*alone, 2).rows, ::testing::UnorderedElementsAre(3, 5));
+  EXPECT_THAT(table.survivors(*alone, 2).rows, ::testing::UnorderedElementsAre(3, 5));
   // row 4 beats two neighbours, and row 5 one; row 1 also beats two, but is less novel than row 4
   const auto competing = make<Selection>("novelty", "neighbours = 2\narchived = 0\nlocal_competition = true");
-  EXPECT_THAT(table.survive(*competing, 2).rows, ::testing::UnorderedElementsAre(4, 5));
+  EXPECT_THAT(table.survivors(*competing, 2).rows, ::testing::UnorderedElementsAre(4, 5));
 }
 
 TEST(NoveltySearch, FailedRowsComeLastAndAreNotNoted) {
@@ -140,7 +131,7 @@ TEST(NoveltySearch, FailedRowsComeLastAndAreNotNoted) {
   Table table = at({1, 1, 1});
   table.rows.push_back({.id = 3, .is_newborn = true, .violation = 2});
   table.rows.push_back({.id = 4, .is_newborn = true, .violation = 1});
-  const Survival survival = table.survive(*selection, 4);
+  const Survival survival = table.survivors(*selection, 4);
   EXPECT_THAT(survival.rows, ::testing::UnorderedElementsAre(0, 1, 2, 4));
   for (const Note& note : survival.notes) EXPECT_LT(note.row, 3u);
 }

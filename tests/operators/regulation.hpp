@@ -48,7 +48,7 @@ inline Life varied_life() {
   for (std::uint32_t i = 0; i < 12; ++i) {
     life.contact.push_back(rng.uniform());
     life.age.push_back(100 * rng.uniform());
-    life.mass_memory.insert(life.mass_memory.end(), {rng.uniform(-1, 1), rng.uniform(-1, 1)});
+    life.mass_memory().insert(life.mass_memory().end(), {rng.uniform(-1, 1), rng.uniform(-1, 1)});
   }
   return life;
 }

@@ -1,9 +1,9 @@
 // Selections that make the children themselves: cma-es and differential.
 #include <set>
 
-#include "evodevo/helpers/selection/memory.hpp"
 #include "evolution.hpp"
 #include "support/messages.hpp"
+#include "support/refusals.hpp"
 
 namespace evodevo::test::EVODEVO_FILE {
 namespace {
@@ -37,7 +37,7 @@ class Sampler : public ::testing::TestWithParam<const char*> {
 };
 
 TEST_P(Sampler, MakesTheFirstGeneration) {
-  EXPECT_TRUE(selection->traits().makes_children);
+  EXPECT_TRUE(selection->overrides.children);
   EXPECT_TRUE(selection->traits().needs_real_genes);
   const Table table{.layout = uneven_genes()};
   const auto children = table.children(*selection, 50);
@@ -89,14 +89,15 @@ TEST(CmaEsSelection, LearnsFromNewbornsAlone) {
     table.rows.push_back({.genome = child.genome, .is_newborn = true});
     evaluate_bowl(table.rows.back());
   }
-  const auto memory = table.survive(*selection, 5).memory;
-  EXPECT_EQ(MemoryReader(memory).read_list<double>().size(), 6u * 7) << "one of the six genes has only one value";
+  const auto memory = table.survivors(*selection, 5).memory;
+  ASSERT_TRUE(memory);
+  EXPECT_EQ(memory->list("distribution").size(), 6u * 7) << "one of the six genes has only one value";
   table.rows.push_back({.scores = {1e9}, .genome = table.rows[0].genome});
-  const Survival survival = table.survive(*selection, 5);
+  const Survival survival = table.survivors(*selection, 5);
   EXPECT_EQ(survival.memory, memory);
   EXPECT_EQ(survival.rows.front(), 12u) << "the best so far lives on";
   table.rows.back().is_newborn = true;
-  EXPECT_NE(table.survive(*selection, 5).memory, memory);
+  EXPECT_NE(table.survivors(*selection, 5).memory, memory);
 }
 
 TEST(CmaEsSelection, TheFirstStepIsAShareOfTheRange) {
@@ -140,8 +141,17 @@ TEST(CmaEsSelection, RefusesOtherGenomesAndAMemoryThatIsNotItsOwn) {
         ::testing::ThrowsMessage<std::runtime_error>(testing::naming(genes, "1000", "encoding", "differential")));
   Evolution evolution(*selection, uneven_genes(), evaluate_bowl, 1);
   evolution.run(2, 10, 10);
-  evolution.table.memory.push_back(std::byte{0});
-  EXPECT_THROW(evolution.table.children(*selection, 5), std::runtime_error);
+  const auto refusal_of = [&](const SelectionMemory& memory) {
+    evolution.table.memory = memory;
+    return testing::refusal<std::runtime_error>([&] { evolution.table.children(*selection, 5); });
+  };
+  const SelectionMemory own = evolution.table.memory;
+  SelectionMemory longer = own, newer = own;
+  longer.lists["distribution"].push_back(0);
+  newer.version = 2;
+  EXPECT_THAT(refusal_of(longer), testing::naming("43 numbers", "42", "5 genes"));
+  EXPECT_THAT(refusal_of(newer), testing::naming("version 2", "expected 1"));
+  EXPECT_THAT(refusal_of({.lists = {{"mean", {1}}}}), testing::naming("\"distribution\""));
 }
 
 TEST(Differential, DrawsGenomesWhileTooFewAreAlive) {
@@ -225,7 +235,7 @@ TEST(Differential, TheBestChildTakesItsParentsPlaceUnlessItIsWorse) {
   const auto selection = make<Selection>("differential");
   const auto expect_living = [&](const char* rule, const Table& table, std::uint32_t population,
                                  const std::vector<std::uint32_t>& living) {
-    EXPECT_THAT(table.survive(*selection, population).rows, ::testing::UnorderedElementsAreArray(living)) << rule;
+    EXPECT_THAT(table.survivors(*selection, population).rows, ::testing::UnorderedElementsAreArray(living)) << rule;
   };
   expect_living("children that are better, worse and equal, and one that failed",
                 {.rows = {{.scores = {5}},

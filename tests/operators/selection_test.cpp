@@ -14,22 +14,27 @@ struct Row {
   std::optional<std::uint32_t> parent = {};
 };
 
-std::vector<Candidate> candidates(const std::vector<Row>& rows) {
+/// Calls `use` with the context of a table, whose ids are the numbers of its rows.
+template <class Use>
+auto seen(const std::vector<Row>& rows, const Use& use) {
   std::vector<Candidate> table;
-  for (const Row& row : rows) table.push_back({row.scores, row.age, row.parent});
-  return table;
+  for (const Row& row : rows) {
+    table.push_back({row.scores, row.age, row.parent});
+    table.back().id = static_cast<std::uint32_t>(table.size() - 1);
+  }
+  const Layout layout;
+  const SelectionMemory memory;
+  Rng rng = stream(1);
+  return use(SelectionContext{table, {}, {}, {}, layout, 1, memory}, rng);
 }
 
 std::vector<std::uint32_t> survivors(const Selection& selection, const std::vector<Row>& rows,
                                      std::uint32_t population) {
-  Rng rng = stream(1);
-  return selection.survivors(candidates(rows), population, rng);
+  return seen(rows, [&](const auto& context, Rng& rng) { return selection.survivors(context, population, rng).rows; });
 }
 
-std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(const Selection& selection, const std::vector<Row>& rows,
-                                                             std::uint32_t count) {
-  Rng rng = stream(1);
-  return selection.parents(candidates(rows), count, rng);
+std::vector<Couple> parents(const Selection& selection, const std::vector<Row>& rows, std::uint32_t count) {
+  return seen(rows, [&](const auto& context, Rng& rng) { return selection.parents(context, count, rng); });
 }
 
 /// Returns 20 random rows and up to 15 children of them. Scores have few different values, so that there are ties, and

@@ -1,8 +1,9 @@
 // Species by homology, and how they share fitness.
 #include <set>
 
-#include "evodevo/helpers/selection/memory.hpp"
 #include "evolution.hpp"
+#include "support/messages.hpp"
+#include "support/refusals.hpp"
 
 namespace evodevo::test::EVODEVO_FILE {
 namespace {
@@ -28,7 +29,7 @@ using Groups = std::set<std::set<std::uint32_t>>;
 Groups groups(const Table& table, const std::string& toml) {
   Groups result;
   const auto population = static_cast<std::uint32_t>(table.rows.size());
-  for (const auto& [number, rows] : species_in(table.survive(*make<Selection>("species", toml), population)))
+  for (const auto& [number, rows] : species_in(table.survivors(*make<Selection>("species", toml), population)))
     result.insert(rows);
   return result;
 }
@@ -36,7 +37,7 @@ Groups groups(const Table& table, const std::string& toml) {
 /// Returns how often each row is a parent, relative to all draws.
 std::vector<double> shares(const Selection& selection, const Table& table, std::uint32_t draws = 20000) {
   std::vector<double> share(table.rows.size(), 0);
-  for (const auto& [parent, mate] : table.couples(selection, draws)) share[parent] += 1.0 / draws;
+  for (const auto& [parent, mate] : table.parents(selection, draws)) share[parent] += 1.0 / draws;
   return share;
 }
 
@@ -67,7 +68,7 @@ TEST(Species, DifferByBlocksWithoutCounterpart) {
 TEST(Species, KeepTheirNumbersThroughGenerations) {
   const auto selection = make<Selection>("species", "threshold = 0.2");
   Table table = with_genes({{0.1f, 5}, {0.9f, 4}});
-  const Survival first = table.survive(*selection, 2);
+  const Survival first = table.survivors(*selection, 2);
   const auto numbers = species_in(first);
   ASSERT_EQ(numbers.size(), 2u);
   table.keep(*selection, first);
@@ -76,7 +77,7 @@ TEST(Species, KeepTheirNumbersThroughGenerations) {
   table.rows.push_back({.scores = {9}, .genome = {0.8f}, .id = 10, .is_newborn = true});
   table.rows.push_back({.scores = {1}, .genome = {0.2f}, .id = 11, .is_newborn = true});
   table.rows.push_back({.scores = {1}, .genome = {0.5f}, .id = 12, .is_newborn = true});
-  table.keep(*selection, table.survive(*selection, 5));
+  table.keep(*selection, table.survivors(*selection, 5));
   ASSERT_EQ(table.rows.size(), 5u);
   EXPECT_EQ(table.rows[0].notes["species"], low);
   EXPECT_EQ(table.rows[1].notes["species"], high);
@@ -86,9 +87,9 @@ TEST(Species, KeepTheirNumbersThroughGenerations) {
   EXPECT_GT(founded, std::max(low, high));
   // when a species has died out, its number is not given to another one
   std::erase_if(table.rows, [](const Individual& one) { return one.id == 12; });
-  table.keep(*selection, table.survive(*selection, 5));
+  table.keep(*selection, table.survivors(*selection, 5));
   table.rows.push_back({.scores = {1}, .genome = {0.5f}, .id = 13, .is_newborn = true});
-  table.keep(*selection, table.survive(*selection, 5));
+  table.keep(*selection, table.survivors(*selection, 5));
   EXPECT_GT(table.rows.back().notes["species"], founded);
 }
 
@@ -100,7 +101,7 @@ TEST(Species, SurvivorsAreThoseOfAFullSearch) {
     std::vector<std::pair<float, double>> rows;
     for (int i = 0; i < 40; ++i) rows.emplace_back(static_cast<float>(rng.uniform()), rng.below(20));
     const Table table = with_genes(rows);
-    const Survival survival = table.survive(*selection, 15);
+    const Survival survival = table.survivors(*selection, 15);
     std::map<std::uint32_t, double> species;
     for (const Note& note : survival.notes) species[note.row] = note.value;
     std::map<double, int> members;
@@ -118,19 +119,21 @@ TEST(Species, SurvivorsAreThoseOfAFullSearch) {
 TEST(Species, AMemoryThatIsNotItsOwnIsRefused) {
   const auto selection = make<Selection>("species");
   Table table = with_genes({{0.1f, 5}, {0.11f, 4}});
-  MemoryWriter writer;
-  writer.write(std::uint32_t{3});
-  writer.write(std::vector<std::uint32_t>{0, 1});
-  writer.write(std::vector<std::uint32_t>{1});
-  table.memory = writer.bytes();
-  EXPECT_THROW(table.couples(*selection, 2), std::runtime_error);
+  const auto refusal_of = [&](std::vector<double> ids, std::vector<double> species, std::vector<double> next) {
+    table.memory.lists = {{"ids", ids}, {"species", species}, {"next", next}};
+    return testing::refusal<std::runtime_error>([&] { table.parents(*selection, 2); });
+  };
+  EXPECT_THAT(refusal_of({0, 1}, {1}, {3}), testing::naming("1 individuals", "expected 2"));
+  EXPECT_THAT(refusal_of({0, 1}, {1, 2}, {}), testing::naming("0 next"));
+  for (const double wrong : {-1.0, 0.5, 1e10})
+    EXPECT_THAT(refusal_of({0, 1}, {1, wrong}, {3}), testing::naming("\"species\"", "whole")) << wrong;
 }
 
 TEST(Species, ParentsShareTheFitnessOfTheirSpecies) {
   const auto selection = make<Selection>("species");
   Table table = with_genes({{0.1f, 5}, {0.11f, 4}, {0.12f, 3}, {0.9f, 2}, {0.91f, 1}});
-  table.keep(*selection, table.survive(*selection, 5));
-  for (const auto& [parent, mate] : table.couples(*selection, 1000)) {
+  table.keep(*selection, table.survivors(*selection, 5));
+  for (const auto& [parent, mate] : table.parents(*selection, 1000)) {
     EXPECT_NE(parent, mate);
     EXPECT_EQ(mate < 3, parent < 3) << "of another species";
   }
@@ -159,12 +162,12 @@ TEST(Species, WithoutMemoryAllAreOne) {
 TEST(Species, BecomeOneWhenTheyAreSimilar) {
   const auto selection = make<Selection>("species", "threshold = 0.2");
   Table table = with_genes({{0.1f, 5}, {0.4f, 4}});
-  table.keep(*selection, table.survive(*selection, 2));
+  table.keep(*selection, table.survivors(*selection, 2));
   EXPECT_NE(table.rows[0].notes["species"], table.rows[1].notes["species"]);
   table.rows[1].genome[0] = 0.25f;
   table.rows[1].scores[0] = 6;
   const double number = table.rows[1].notes["species"];
-  table.keep(*selection, table.survive(*selection, 2));
+  table.keep(*selection, table.survivors(*selection, 2));
   EXPECT_EQ(table.rows[0].notes["species"], number) << "that of the better one";
   EXPECT_EQ(table.rows[1].notes["species"], number);
 }
@@ -173,10 +176,10 @@ TEST(Species, FailedRowsDieUnlessAllFailed) {
   const auto selection = make<Selection>("species");
   Table table = with_genes({{0.1f, 3}, {0.9f, 1}, {0.5f, 2}});
   table.rows[2].scores.clear();
-  EXPECT_THAT(table.survive(*selection, 3).rows, ::testing::UnorderedElementsAre(0, 1));
+  EXPECT_THAT(table.survivors(*selection, 3).rows, ::testing::UnorderedElementsAre(0, 1));
   for (Individual& one : table.rows) one.scores.clear();
-  EXPECT_THAT(table.survive(*selection, 2).rows, ::testing::SizeIs(2));
-  EXPECT_THAT(table.couples(*selection, 7), ::testing::SizeIs(7));
+  EXPECT_THAT(table.survivors(*selection, 2).rows, ::testing::SizeIs(2));
+  EXPECT_THAT(table.parents(*selection, 7), ::testing::SizeIs(7));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "base/genome_sections.hpp"
 #include "evodevo/blocks.hpp"
+#include "evodevo/helpers/activations.hpp"
 #include "evodevo/neat.hpp"
 #include "support.hpp"
 
@@ -16,7 +17,7 @@ constexpr std::uint32_t node = 0, link = 1;
 /// Networks of at most 8 nodes and 12 links: at first three nodes, and links from 0 and 1 to 2.
 Layout network() {
   Layout layout;
-  neat::add_types(layout, 3, 5, 8, 12);
+  neat::add_types(layout, 3, activation_names(), 8, 12);
   for (int i = 0; i < 3; ++i) layout.add_block_of(node);
   for (int i = 0; i < 2; ++i) layout.add_block_of(link);
   return layout;
@@ -48,7 +49,7 @@ std::vector<float> newest(const Genome& genome, std::uint32_t type) {
 Genome mutated(const Mutation& mutation, std::uint64_t seed, int times = 1, const Layout& layout = network()) {
   Rng rng = stream(seed);
   Genome genome = first_network();
-  for (int i = 0; i < times; ++i) mutation.mutate(genome, layout, rng);
+  for (int i = 0; i < times; ++i) mutation.mutate(genome, {layout}, rng);
   return genome;
 }
 
@@ -131,7 +132,7 @@ TEST(AddNode, SplitsNoLinkOfWhichAPartIsThere) {
       for (const Block& block : genome.blocks)
         if (block.type == link) genome[block.first + neat::on] = 1;
       Rng rng = stream(seed);
-      for (int i = 0; i < 4; ++i) mutation->mutate(genome, network(), rng);
+      for (int i = 0; i < 4; ++i) mutation->mutate(genome, {network()}, rng);
       ASSERT_GT(count(genome, node), 3u);
       ASSERT_EQ(genome_fault(genome, network()), "") << seed;
     }
@@ -212,7 +213,7 @@ TEST(Neat, BearsTheLossOfAnyBlock) {
   Rng rng = stream(7);
   Genome genome = encoding->random(layout, rng);
   while (!genome.blocks.empty()) {
-    remove->mutate(genome, layout, rng);
+    remove->mutate(genome, {layout}, rng);
     EXPECT_EQ(decoded(*encoding, genome).body.masses.size(), 20u);
   }
 }
@@ -231,7 +232,7 @@ TEST(Uniform, TakesBlocksOfTheBetterAndAsManyGenesOfTheWorseAsAskedFor) {
     int from_worse = 0;
     Rng rng = stream(1);
     for (int i = 0; i < 400; ++i) {
-      const Genome child = crossover->cross(parents, layout, rng);
+      const Genome child = crossover->cross(parents, {layout}, rng);
       EXPECT_EQ(ids(child), ids(better));
       EXPECT_TRUE(child[10] == -2.5f || child[10] == 2.5f);
       from_worse += child[10] == 2.5f;

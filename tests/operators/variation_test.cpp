@@ -25,7 +25,7 @@ std::vector<std::size_t> differences(const Genome& a, const Genome& b) {
 }
 
 Genome mutant(Genome genome, const Mutation& mutation, const Layout& layout, Rng& rng) {
-  mutation.mutate(genome, layout, rng);
+  mutation.mutate(genome, {layout}, rng);
   return genome;
 }
 
@@ -55,7 +55,7 @@ TEST(ResetWeight, ReachesAllValues) {
   double low = 1, high = -1, sum = 0;
   constexpr int rounds = 14000;
   for (int i = 0; i < rounds; ++i) {
-    mutation->mutate(genome, layout, rng);
+    mutation->mutate(genome, {layout}, rng);
     ++options[genome[3]];
     low = std::min<double>(low, genome[0]);
     high = std::max<double>(high, genome[0]);
@@ -283,7 +283,7 @@ TEST(Crossovers, NothingComesOfNothing) {
   const Genome nothing;
   Rng rng = stream(3);
   for (const char* name : {"swap-neuron", "two-point"})
-    EXPECT_TRUE(make<Crossover>(name)->cross({nothing, nothing}, {}, rng).empty()) << name;
+    EXPECT_TRUE(make<Crossover>(name)->cross({nothing, nothing}, {Layout{}}, rng).empty()) << name;
 }
 
 /// Returns how often each set of genes was taken from the second parent.
@@ -293,7 +293,7 @@ std::map<std::vector<std::size_t>, int> exchanges(const char* name, const Layout
   Rng rng = stream(4);
   const Genome mother(layout.first_size(), 0), father(layout.first_size(), 1);
   for (int i = 0; i < rounds; ++i) {
-    const Genome child = crossover->cross({mother, father}, layout, rng);
+    const Genome child = crossover->cross({mother, father}, {layout}, rng);
     for (const float gene : child) EXPECT_TRUE(gene == 0 || gene == 1) << gene;
     ++seen[differences(mother, child)];
   }
@@ -333,7 +333,7 @@ TEST(Sbx, SpreadsChildrenAsDebAndAgrawalSay) {
   int within_half = 0, within_one = 0;
   double sum = 0;
   for (int i = 0; i < children; ++i) {
-    const Genome child = crossover->cross({first, second}, layout, rng);
+    const Genome child = crossover->cross({first, second}, {layout}, rng);
     EXPECT_EQ(child[1], 2) << "a choice is not blended";
     const double spread = std::abs(child[0] - 1) / 2;
     within_half += spread < 0.5;

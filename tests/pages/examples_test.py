@@ -59,4 +59,25 @@ class Examples(PageTest):
         self.assertEqual(kinds, KINDS)
 
 
+class Selections(PageTest):
+    def refusal(self, functions):
+        """Returns what the compiler says about a selection operator with these functions."""
+        with tempfile.TemporaryDirectory() as folder:
+            source = Path(folder, "plugin.cpp")
+            source.write_text("#include \"evodevo/plugin.hpp\"\nusing namespace evodevo;\nstruct S final : Selection {\n"
+                              + functions + "};\nEVODEVO_PLUGIN(\"1\", \"MIT\", operator_entry<S>(\"s\", \"Selects.\"))\n")
+            return subprocess.run(["g++", "-std=c++20", "-fsyntax-only", *INCLUDES, str(source)],
+                                  capture_output=True, text=True).stderr
+
+    def test_that_cannot_work_are_refused_by_the_compiler(self):
+        context = "(const SelectionContext&, std::uint32_t, Rng&) const override { return {}; }\n"
+        parents, children = "std::vector<Couple> parents" + context, "Offspring children" + context
+        self.assertIn("does nothing; override parents(), survivors() or children()", self.refusal(""))
+        self.assertIn("overrides parents() and children(), of which only one", self.refusal(parents + children))
+        self.assertIn("declares parents(), survivors() or children() otherwise",
+                      self.refusal("Survival survivors(std::span<const Candidate>, std::uint32_t, Rng&) const;\n"))
+        for functions in parents, children:
+            self.assertEqual(self.refusal(functions), "")
+
+
 unittest.main()

@@ -34,7 +34,7 @@ class Helper(NamedTuple):
 def name_of(declaration):
     """Returns the name that a C++ declaration declares."""
     declaration = re.sub(r"^template <[^>]*>\s*", "", declaration)
-    for pattern in (r"\b(?:class|struct|enum|using) (\w+)", r"(\w+) = {", r"(\w+)\(", r"(\w+) = "):
+    for pattern in (r"\b(?:class|struct|enum|using) (\w+)", r"^[^(]*\b(\w+) = {", r"(\w+)\(", r"(\w+) = "):
         if found := re.search(pattern, declaration):
             return found[1]
     raise ValueError(f"no name: {declaration}")

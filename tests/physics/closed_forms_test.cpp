@@ -1,6 +1,8 @@
 // The motion and the recordings of the simulator compared with closed-form solutions.
+#include <array>
 #include <cmath>
 #include <complex>
+#include <utility>
 
 #include "analysis/energy.hpp"
 #include "analysis/ground.hpp"
@@ -10,6 +12,20 @@ namespace evodevo::test::EVODEVO_FILE {
 namespace {
 
 constexpr double g = 9.81;
+
+TEST(Vec3, HasThreeCoordinatesByNameAndByNumber) {
+  Vec3 v{1, 2, 3};
+  EXPECT_EQ((std::array{std::as_const(v)[0], std::as_const(v)[1], std::as_const(v)[2]}), (std::array{1.0, 2.0, 3.0}));
+  for (std::size_t axis = 0; axis < 3; ++axis) v[axis] *= -2;
+  EXPECT_EQ(v, (Vec3{-2, -4, -6}));
+  EXPECT_EQ(v[3], -6) << "defined, though no coordinate";
+}
+
+TEST(Vec3, IsNormalisedUnlessItHasNoDirection) {
+  EXPECT_EQ(normalised({0, -3, 4}), (Vec3{0, -0.6, 0.8}));
+  EXPECT_NEAR(norm(normalised({1e-3, 2e-3, -7e-3})), 1, 1e-15);
+  EXPECT_EQ(normalised({0, 0, 0}), (Vec3{0, 0, 0}));
+}
 
 class ClosedForm : public EachWay {};
 

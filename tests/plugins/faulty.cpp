@@ -35,7 +35,8 @@ struct Nothing final : evodevo::Mutation {
       p.integer(genes, "genes\x1b[31m", {0, 5, "\u009b"}, "Genes\nthat change.\xff");
     if constexpr (fault == "reserved") p.real(every, "every", {0, 50, "1"}, "Genes from one to the next.");
   }
-  void mutate([[maybe_unused]] evodevo::Genome& genome, const evodevo::Layout&, evodevo::Rng&) const override {
+  void mutate([[maybe_unused]] evodevo::Genome& genome, const evodevo::VariationContext&,
+              evodevo::Rng&) const override {
     if constexpr (fault == "throws") throw std::runtime_error("nothing to mutate");
     if constexpr (fault == "controls_thrown")
       throw std::runtime_error("\x1b[31mnothing\nto mutate\xff" + std::string(1'000'000, '!'));

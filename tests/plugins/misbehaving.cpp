@@ -67,7 +67,7 @@ struct Told : Kind {
 };
 
 struct Mutation final : Told<evodevo::Mutation> {
-  void mutate(evodevo::Genome&, const evodevo::Layout&, evodevo::Rng&) const override {
+  void mutate(evodevo::Genome&, const evodevo::VariationContext&, evodevo::Rng&) const override {
     at_end.crashes = how == "crash-at-end";
     if (how == "hang") hang();
     if (how == "exit") std::exit(0);
@@ -154,15 +154,20 @@ struct Selection final : Told<evodevo::Selection> {
     if (how == "twin-notes") return {{"age"}, {"size"}, {"age"}};
     return {};
   }
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const evodevo::Candidate> rows,
-                                                               std::uint32_t count, evodevo::Rng& rng) const override {
-    if (how == "no-parents") return evodevo::Selection::parents(rows, count, rng);
-    return std::vector<std::pair<std::uint32_t, std::uint32_t>>(how == "too-few-parents" ? count - 1 : count);
+  std::vector<std::string> memory() const override {
+    if (how == "nameless-list") return {"age", ""};
+    if (how == "twin-lists") return {"age", "size", "age"};
+    return {};
   }
-  std::vector<std::uint32_t> survivors(std::span<const evodevo::Candidate> rows, std::uint32_t population,
+  std::vector<evodevo::Couple> parents(const evodevo::SelectionContext& context, std::uint32_t count,
                                        evodevo::Rng& rng) const override {
-    if (how == "no-survivors") return evodevo::Selection::survivors(rows, population, rng);
-    return {0};
+    if (how == "no-parents") return evodevo::Selection::parents(context, count, rng);
+    return std::vector<evodevo::Couple>(how == "too-few-parents" ? count - 1 : count);
+  }
+  evodevo::Survival survivors(const evodevo::SelectionContext& context, std::uint32_t population,
+                              evodevo::Rng& rng) const override {
+    if (how == "no-survivors") return evodevo::Selection::survivors(context, population, rng);
+    return std::vector<std::uint32_t>{0};
   }
 };
 

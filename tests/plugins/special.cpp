@@ -12,6 +12,7 @@ namespace {
 using evodevo::Genome;
 using evodevo::Layout;
 using evodevo::Rng;
+using evodevo::VariationContext;
 
 /// A tree: each twig begins where the twig ends to which it refers.
 struct Twigs final : evodevo::Encoding {
@@ -43,7 +44,8 @@ struct Twigs final : evodevo::Encoding {
 struct Redraw : evodevo::Mutation {
   explicit Redraw(const char* type) : type_(type) {}
   evodevo::Traits traits() const override { return {.block_types = {type_}}; }
-  void mutate(Genome& genome, const Layout& layout, Rng& rng) const override {
+  void mutate(Genome& genome, const VariationContext& context, Rng& rng) const override {
+    const Layout& layout = context.layout;
     for (const evodevo::Block& block : layout.blocks(genome))
       if (layout.types[block.type].name == type_) genome[block.first] = layout.draw(genome, block.first, rng);
   }
@@ -63,27 +65,24 @@ struct Feeling final : evodevo::Devo {
   evodevo::RecordRequest observes() const override {
     return {.contact = true, .age = true, .degree = true, .load = true};
   }
-  evodevo::Measure measure(evodevo::Causes::List) const override { return {"feeling", "1"}; }
+  evodevo::Measure measure(evodevo::EditKind) const override { return {"feeling", "1"}; }
   std::vector<std::string> mass_memory() const override { return {"feeling"}; }
   std::vector<std::string> spring_memory() const override { return {"came"}; }
   void develop(const evodevo::DevoContext& context, evodevo::Edits& edits, Rng&) const override {
     const auto masses = static_cast<std::uint32_t>(context.body.masses.size());
-    for (std::uint32_t i = 0; i < masses; ++i)
-      edits.mass_memory.push_back(context.mass_memory[i][0] + context.contact[i] +
-                                  context.load[i] / (1 + context.degree[i]) / (1 + context.age[i]));
-    for (std::uint32_t s = 0; s < context.body.springs.size(); ++s)
-      edits.spring_memory.push_back(context.spring_memory[s][0]);
+    std::vector<double> felt;
+    for (std::uint32_t i = 0; i < masses; ++i) {
+      felt.push_back(context.mass_memory[i][0] + context.contact[i] +
+                     context.load[i] / (1 + context.degree[i]) / (1 + context.age[i]));
+      edits.remember_mass(i, {felt[i]});
+    }
     if (masses < 4) return;
-    const auto least = static_cast<std::uint32_t>(std::min_element(edits.mass_memory.begin(), edits.mass_memory.end()) -
-                                                  edits.mass_memory.begin());
-    edits.removed_masses = {least};
-    edits.causes.removed_masses = {edits.mass_memory[least]};
-    edits.new_masses.push_back({context.bounds.low + 0.5 * (context.bounds.high - context.bounds.low), context.mass});
-    edits.mass_memory.push_back(0);
+    const auto least = static_cast<std::uint32_t>(std::min_element(felt.begin(), felt.end()) - felt.begin());
+    edits.remove_mass(least, {.cause = felt[least]});
+    const std::uint32_t newest = edits.add_mass(context.bounds.low + 0.5 * (context.bounds.high - context.bounds.low));
     for (std::uint32_t i = 0, joined = 0; i < masses && joined < 3; ++i) {
       if (i == least) continue;
-      edits.new_springs.push_back({i, masses, {1000, 0, 0, 0}, {}});
-      edits.spring_memory.push_back(context.cycle);
+      edits.remember_spring(edits.join(i, newest, {1000, 0, 0, 0}), {static_cast<double>(context.cycle)});
       ++joined;
     }
   }
@@ -95,11 +94,11 @@ struct ByFile final : evodevo::Mutation {
     p.file(file_, "file", "A text of digits.");
     p.require(!file_.path.empty(), "file", "expected a file of digits");
   }
-  void mutate(Genome& genome, const Layout& layout, Rng& rng) const override {
+  void mutate(Genome& genome, const VariationContext& context, Rng& rng) const override {
     const auto size = static_cast<std::uint32_t>(file_.content.size());
     const int digit = file_.content.at(rng.below(size)) - '0';
     for (std::size_t i = 0; i < genome.size(); ++i) {
-      const evodevo::GeneSpec& gene = layout.gene(genome, i);
+      const evodevo::GeneSpec& gene = context.layout.gene(genome, i);
       if (!gene.is_real()) continue;
       genome[i] = gene.low + (gene.high - gene.low) * static_cast<float>(digit) / 9;
       return;
@@ -121,24 +120,19 @@ struct EarlyWay final : evodevo::Fitness {
 
 /// Chooses parents alone, all with the same chance.
 struct Lottery : evodevo::Selection {
-  evodevo::Traits traits() const override { return {.chooses_survivors = false}; }
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const evodevo::Candidate> rows,
-                                                               std::uint32_t count, Rng& rng) const override {
-    return draw_pairs(rows, count, rng, evodevo::draw_any);
+  std::vector<evodevo::Couple> parents(const evodevo::SelectionContext& context, std::uint32_t count,
+                                       Rng& rng) const override {
+    return draw_pairs(context.rows, count, rng, evodevo::draw_any);
   }
 };
 
 /// Chooses survivors alone: the best.
 struct Best final : evodevo::Selection {
-  evodevo::Traits traits() const override { return {.chooses_parents = false}; }
   void parameters(evodevo::Parameters& p) override {
     p.integer(seed_, "seed", {0, 1e18, "1"}, "A number that has no effect, of a wide range.");
   }
-  std::vector<std::uint32_t> survivors(std::span<const evodevo::Candidate> rows, std::uint32_t population,
-                                       Rng&) const override {
-    auto order = best_first(rows);
-    order.resize(std::min<std::size_t>(order.size(), population));
-    return order;
+  evodevo::Survival survivors(const evodevo::SelectionContext& context, std::uint32_t population, Rng&) const override {
+    return evodevo::first_rows(best_first(context.rows), population);
   }
 
  private:
@@ -147,7 +141,7 @@ struct Best final : evodevo::Selection {
 
 /// Chooses parents alone, and needs three objectives.
 struct ThreeGoals final : Lottery {
-  evodevo::Traits traits() const override { return {.chooses_survivors = false, .least_objectives = 3}; }
+  evodevo::Traits traits() const override { return {.least_objectives = 3}; }
 };
 
 }  // namespace

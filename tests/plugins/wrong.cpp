@@ -20,12 +20,13 @@ using evodevo::Candidate;
 using evodevo::Genome;
 using evodevo::Layout;
 using evodevo::Rng;
+using evodevo::VariationContext;
 
 constexpr std::string_view fault = FAULT;
 
 struct Crossover final : evodevo::Crossover {
-  Genome cross(const evodevo::Parents& parents, const Layout& layout, Rng& rng) const override {
-    return fault == "twins" ? random_genome(layout, rng) : parents.first;
+  Genome cross(const evodevo::Parents& parents, const VariationContext& context, Rng& rng) const override {
+    return fault == "twins" ? random_genome(context.layout, rng) : parents.first;
   }
 };
 
@@ -42,8 +43,7 @@ struct Encoding final : evodevo::Encoding {
     blueprint.body.materials = context.materials;
     blueprint.body.masses = {{{0, 0, 0}, 1}, {{1, 0, 0}, 1}};
     blueprint.body.springs = {{0, fault == "decoding" ? 2u : 1u, 1, 1}};  // there is no mass 2
-    if constexpr (fault == "decoding_growth" || fault == "decoding_nothing")
-      blueprint.body.springs = {{0, 1, 1, 1, 1.5F}};
+    if constexpr (fault == "decoding_springs") blueprint.spring_memory["stem"] = {1};
     if constexpr (fault == "decoding_memory") blueprint.mass_memory["stem"] = {1, 2, 3};
     return blueprint;
   }
@@ -58,32 +58,32 @@ struct Devo final : evodevo::Devo {
     if constexpr (fault == "locality") return {.locality = 3};
     return {};
   }
-  evodevo::Measure measure(evodevo::Causes::List list) const override {
+  evodevo::Measure measure(evodevo::EditKind edit) const override {
     if constexpr (fault == "names_measure") return {"<b>work</b>", "J"};
-    return evodevo::Devo::measure(list);
+    return evodevo::Devo::measure(edit);
   }
   void develop([[maybe_unused]] const evodevo::DevoContext& context, [[maybe_unused]] evodevo::Edits& edits,
                [[maybe_unused]] Rng& rng) const override {
     if constexpr (fault == "locality") {
       for (std::uint32_t s = 0; s < context.body.springs.size(); ++s)  // one mass less, and all later draws differ
-        if (rng.chance(0.1)) edits.removed_springs.push_back(s);
+        if (rng.chance(0.1)) edits.remove_spring(s);
     } else if constexpr (fault == "bodies") {
       if (context.body.springs.empty()) return;
       const evodevo::Spring& twin = context.body.springs[0];
-      edits.new_springs.push_back({twin.a, twin.b, context.body.materials[twin.material], {}});
+      edits.join(twin.a, twin.b, context.body.materials[twin.material]);
     } else if constexpr (fault == "bodies_dangling") {
       const auto beyond = static_cast<std::uint32_t>(context.body.masses.size());
-      edits.new_springs.push_back({0, beyond, {1000, 0, 0, 0}, {}});
+      edits.join(0, beyond, {1000, 0, 0, 0});
     } else if constexpr (fault == "bodies_nan") {
-      edits.new_springs.push_back({0, 1, {std::nan(""), 0, 0, 0}, {}});
+      edits.join(0, 1, {std::nan(""), 0, 0, 0});
     } else if constexpr (fault == "bodies_destroyed") {
-      for (std::uint32_t s = 0; s < context.body.springs.size(); ++s) edits.removed_springs.push_back(s);
-    } else if constexpr (fault == "bodies_growth") {
-      edits.growth = {0, 1};
+      for (std::uint32_t s = 0; s < context.body.springs.size(); ++s) edits.remove_spring(s);
+    } else if constexpr (fault == "bodies_scaling") {
+      edits.scale_lengths({.to = 1});
     } else if constexpr (fault == "bodies_beyond") {
-      edits.new_masses.push_back({context.bounds.low - evodevo::Vec3{0, 0, 1}, context.mass});
+      edits.add_mass(context.bounds.low - evodevo::Vec3{0, 0, 1});
     } else if constexpr (fault == "bodies_memory") {
-      edits.mass_memory.assign(context.body.masses.size() - 1, 1.0);
+      edits.remember_mass(1, {1.0, 2.0});
     }
   }
 };
@@ -104,42 +104,43 @@ struct Fitness final : evodevo::Fitness {
 };
 
 struct Generations final : evodevo::Selection {
-  evodevo::Traits traits() const override { return {.is_elitist = false, .makes_children = true}; }
+  evodevo::Traits traits() const override { return {.is_elitist = false}; }
   std::vector<evodevo::NoteTitle> notes() const override { return {{"share"}}; }
-  std::vector<evodevo::Child> children(const evodevo::SelectionContext& context, std::uint32_t count,
-                                       Rng& rng) const override {
+  std::vector<std::string> memory() const override { return {"calls"}; }
+  evodevo::Offspring children(const evodevo::SelectionContext& context, std::uint32_t count, Rng& rng) const override {
     std::vector<evodevo::Child> children;
     for (std::uint32_t i = 0; i < count; ++i) children.push_back({random_genome(context.layout, rng)});
     if (fault == "generations_children" && context.rows.empty())
       children.front().genome.genes.front() = 1000;  // in the first generation alone
+    if (fault == "generations_child" && context.rows.empty()) children.back().notes = {{1, 0.5}};
     return children;
   }
-  evodevo::Survival survive(const evodevo::SelectionContext& context, std::uint32_t, Rng&) const override {
-    evodevo::Survival survival{{0}};
+  evodevo::Survival survivors(const evodevo::SelectionContext& context, std::uint32_t, Rng&) const override {
+    const auto eldest = std::ranges::min_element(context.rows, {}, &Candidate::id);
+    evodevo::Survival survival = std::vector{static_cast<std::uint32_t>(eldest - context.rows.begin())};
     static int calls = 0;
-    if (fault == "generations") survival.memory = {std::byte(++calls)};
+    if (fault == "generations") survival.memory = evodevo::SelectionMemory{.lists = {{"calls", {double(++calls)}}}};
     const double failed = std::count_if(context.rows.begin(), context.rows.end(), [](auto& row) { return !row.ok(); });
-    if (fault == "generations_note") survival.notes = {{0, 0, 1 / failed}};  // if none failed, no number
+    if (fault == "generations_note") survival.notes = {{survival.rows[0], 0, 1 / failed}};  // if none failed, no number
     return survival;
   }
 };
 
 /// The best survive, and all children are equal to the individual that was born last.
 struct Remembering final : evodevo::Selection {
-  evodevo::Traits traits() const override {
-    return {.makes_children = true, .needs_real_genes = true, .needs_memory = fault == "order_memory"};
-  }
-  std::vector<evodevo::Child> children(const evodevo::SelectionContext& context, std::uint32_t count,
-                                       Rng& rng) const override {
+  evodevo::Traits traits() const override { return {.needs_real_genes = true}; }
+  std::vector<std::string> memory() const override { return {fault == "generations_memory" ? "proteins" : "genes"}; }
+  evodevo::Offspring children(const evodevo::SelectionContext& context, std::uint32_t count, Rng& rng) const override {
     if (context.memory.empty()) return std::vector<evodevo::Child>(count, {random_genome(context.layout, rng)});
     Genome genome(context.layout.first_size());
-    genome.genes = evodevo::MemoryReader(context.memory).read_list<float>();
+    std::ranges::copy(context.memory.list("genes"), genome.begin());
     return std::vector<evodevo::Child>(count, {genome});
   }
-  evodevo::Survival survive(const evodevo::SelectionContext& context, std::uint32_t population, Rng&) const override {
-    evodevo::MemoryWriter writer;
-    writer.write(context.rows.back().genome->genes);
-    return {evodevo::first_rows(evodevo::best_first(context.rows), population), writer.bytes()};
+  evodevo::Survival survivors(const evodevo::SelectionContext& context, std::uint32_t population, Rng&) const override {
+    evodevo::Survival survival = evodevo::first_rows(evodevo::best_first(context.rows), population);
+    const std::vector<float>& genes = context.rows.back().genome->genes;
+    survival.memory = evodevo::SelectionMemory{.lists = {{"genes", {genes.begin(), genes.end()}}}};
+    return survival;
   }
 };
 
@@ -149,7 +150,8 @@ struct Selection final : evodevo::Selection {
     std::iota(order.begin(), order.end(), 0u);
     std::stable_sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
       if (rows[i].ok() != rows[j].ok()) return rows[fault == "failed" ? j : i].ok();
-      return rows[i].ok() && rows[i].scores[0] > rows[j].scores[0];
+      if (rows[i].ok() && rows[i].scores[0] != rows[j].scores[0]) return rows[i].scores[0] > rows[j].scores[0];
+      return fault != "order_ties" && rows[i].id < rows[j].id;
     });
     if (fault == "order")
       std::sort(order.begin(), order.end(),
@@ -157,15 +159,13 @@ struct Selection final : evodevo::Selection {
     if (fault == "elite" && order.size() > 1) order.erase(order.begin());
     return order;
   }
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const Candidate> rows, std::uint32_t count,
-                                                               Rng&) const override {
-    const std::uint32_t best = best_first(rows).front();
+  std::vector<evodevo::Couple> parents(const evodevo::SelectionContext& context, std::uint32_t count,
+                                       Rng&) const override {
+    const std::uint32_t best = best_first(context.rows).front();
     return {count, {best, best}};
   }
-  std::vector<std::uint32_t> survivors(std::span<const Candidate> rows, std::uint32_t population, Rng&) const override {
-    auto order = best_first(rows);
-    order.resize(std::min<std::size_t>(order.size(), population));
-    return order;
+  evodevo::Survival survivors(const evodevo::SelectionContext& context, std::uint32_t population, Rng&) const override {
+    return evodevo::first_rows(best_first(context.rows), population);
   }
 };
 
@@ -200,7 +200,7 @@ struct Mutation final : evodevo::Mutation {
       if constexpr (fault != "refusals") throw;
     }
   }
-  void mutate([[maybe_unused]] Genome& genome, [[maybe_unused]] const Layout& layout,
+  void mutate([[maybe_unused]] Genome& genome, [[maybe_unused]] const VariationContext& context,
               [[maybe_unused]] Rng& rng) const override {
     if constexpr (fault == "changes") return;
     ++calls_;
@@ -213,7 +213,7 @@ struct Mutation final : evodevo::Mutation {
     }
     if (genome.empty()) return;
     float& gene = genome[0];
-    const evodevo::GeneSpec& spec = layout.gene(genome, 0);
+    const evodevo::GeneSpec& spec = context.layout.gene(genome, 0);
     gene = spec.draw(rng);
     if constexpr (fault == "same_seed") gene = static_cast<float>(std::random_device()() % 1000) / 1000;
     if (fault == "threads" && !made_here) gene = spec.low;
@@ -240,10 +240,10 @@ constexpr evodevo::OperatorEntry wrong() {
     return operator_entry<Devo>(name, summary);
   if constexpr (is_one_of("translation", "nan_hidden", "objectives", "objectives_nan", "names_objective", "names_unit"))
     return operator_entry<Fitness>(name, summary);
-  if constexpr (is_one_of("generations", "generations_note", "generations_children"))
+  if constexpr (is_one_of("generations", "generations_note", "generations_children", "generations_child"))
     return operator_entry<Generations>(name, summary);
   if constexpr (is_one_of("order_memory", "generations_memory")) return operator_entry<Remembering>(name, summary);
-  if constexpr (is_one_of("order", "elite", "failed")) return operator_entry<Selection>(name, summary);
+  if constexpr (is_one_of("order", "order_ties", "elite", "failed")) return operator_entry<Selection>(name, summary);
   return operator_entry<Mutation>(name, summary);
 }
 

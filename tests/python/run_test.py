@@ -2,6 +2,7 @@
 
 import contextlib
 import json
+import re
 import sqlite3
 import tempfile
 import unittest
@@ -69,6 +70,12 @@ class OfASmallRun(unittest.TestCase):
             table = run.genes(individual)
             self.assertEqual([tuple(row) for row in table[["section", "block", "type", "gene"]].to_numpy()], wanted)
             np.testing.assert_array_equal(table["value"], run.genome(individual))
+            values = [value for section in printed["sections"] for block in section["blocks"]
+                      for value in block["genes"].values()]
+            options = [value if isinstance(value, str) and not re.fullmatch("[0-9a-f]{16}", value) else ""
+                       for value in values]  # and not the ids of references
+            self.assertEqual(list(table["option"]), options)
+        self.assertIn("on", options)  # a link of the network
             first = next(iter(printed["sections"][0]["blocks"][0]["genes"].values()))
             if isinstance(first, float):
                 self.assertAlmostEqual(first, table["value"][0], places=6)

@@ -20,8 +20,8 @@ inline void expect_same_body(const Body& one, const Body& other) {
   ASSERT_EQ(one.springs.size(), other.springs.size());
   for (std::size_t i = 0; i < one.springs.size(); ++i) {
     const Spring &a = one.springs[i], &b = other.springs[i];
-    EXPECT_EQ(std::tie(a.a, a.b, a.rest_length, a.material, a.growth, a.stiffness_factor),
-              std::tie(b.a, b.b, b.rest_length, b.material, b.growth, b.stiffness_factor))
+    EXPECT_EQ(std::tie(a.a, a.b, a.rest_length, a.material, a.stiffness_factor),
+              std::tie(b.a, b.b, b.rest_length, b.material, b.stiffness_factor))
         << i;
   }
 }

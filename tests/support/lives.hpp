@@ -43,6 +43,11 @@ struct GivenBlueprint final : Encoding {
     made.body.materials = context.materials;
     return made;
   }
+  std::vector<std::string> spring_memory() const override {
+    std::vector<std::string> names;
+    for (const auto& [name, numbers] : blueprint.spring_memory) names.push_back(name);
+    return names;
+  }
 };
 
 /// Expects that each individual lives alone, on one thread, exactly as it lives with the others on three. Returns
@@ -117,16 +122,16 @@ struct FinishedRun {
   }
 };
 
-/// The lives of newborns to the end of their development, and their bodies at birth.
+/// The lives of newborns to the end of their development, and what they were at birth.
 struct Developed {
-  std::vector<Body> born;
+  std::vector<LivingBody> born;
   std::vector<Life> lives;
 
   Developed(const Experiment& experiment, std::span<const Newborn> newborns, int threads = 2) {
     const auto simulator = make_cpu_simulator(experiment.scene, experiment.stepping, threads);
     const Evaluation evaluation(experiment, *simulator);
     lives = evaluation.birth.of(newborns);
-    for (const Life& life : lives) born.push_back(life.living.body);
+    for (const Life& life : lives) born.push_back(life.living);
     evaluation.development.run(lives, [](double) {});
   }
   Developed(const Experiment& experiment, std::uint32_t count, int threads = 2)

@@ -23,14 +23,17 @@ inline const auto unwatched = [](double) {};
 /// A devo operator that does what a test says.
 struct Told final : Devo {
   RecordRequest request = {};
-  std::vector<std::string> of_masses = {}, of_springs = {};
+  std::vector<std::string> of_masses = {}, of_springs = {}, of_body = {};
+  Traits claims = {};
   std::function<void(const DevoContext&, Edits&)> action = {};
 
   Told(RecordRequest wanted, std::function<void(const DevoContext&, Edits&)> then)
       : request(wanted), action(std::move(then)) {}
+  Traits traits() const override { return claims; }
   RecordRequest observes() const override { return request; }
   std::vector<std::string> mass_memory() const override { return of_masses; }
   std::vector<std::string> spring_memory() const override { return of_springs; }
+  std::vector<std::string> body_memory() const override { return of_body; }
   void develop(const DevoContext& context, Edits& edits, Rng&) const override { action(context, edits); }
 };
 
@@ -62,12 +65,10 @@ inline std::vector<double> numbers_of(std::span<const double> record) { return {
 
 /// Joins a new mass to the first two masses.
 inline void add_mass(const DevoContext& context, Edits& edits) {
-  const auto newest = static_cast<std::uint32_t>(context.body.masses.size() + edits.new_masses.size());
   const Box& box = context.bounds;
   const double part = 0.3 + 0.1 * static_cast<double>(edits.new_masses.size());
-  edits.new_masses.push_back({box.low + part * (box.high - box.low), context.mass, 0});
-  edits.new_springs.push_back({0, newest, {10000, 0, 0, 0}, {}});
-  edits.new_springs.push_back({1, newest, {10000, 0, 0, 0}, {}});
+  const std::uint32_t newest = edits.add_mass(box.low + part * (box.high - box.low), {.material = 0});
+  for (const std::uint32_t partner : {0, 1}) edits.join(partner, newest, Material{10000, 0, 0, 0});
 }
 
 inline constexpr RecordRequest all_of_masses{.contact = true, .age = true, .degree = true, .load = true};

@@ -185,7 +185,7 @@ class OperatorTables {
 
   void refuse_variation() const {
     const std::string why = "the selection operator \"" + out_.child_maker +
-                            "\" makes the children itself (its trait makes_children); remove the tables of this name, "
+                            "\" makes the children itself (it overrides children()); remove the tables of this name, "
                             "or choose another selection operator";
     if (!out_.mutations.empty()) top_.report("mutation", why);
     if (!out_.crossovers.empty()) top_.report("crossover", why);
@@ -218,11 +218,15 @@ class OperatorTables {
     out_.devo.back().own_section = add_own_section(t, [&] { return op.layout(out_.context); });
     check_request(t, factory_.ask(t, [&] { return op.observes(); }));
     factory_.ask(t, [&] { return memory_names(op); });
-    if (out_.encoding && factory_.ask(t, [&] { return op.uses_growth() && !out_.encoding->sets_growth(); }))
-      out_.warnings.push_back(t.full_name("name") + " = \"" + out_.uses.back().name +
-                              "\": the encoding lets no spring grow, so this operator changes nothing; set "
-                              "encoding.size_range (for phases, encoding.phase_range), or choose an encoding that has "
-                              "this key");
+    const std::vector<std::string> needed = factory_.ask(t, [&] { return op.traits().needs_at_birth; });
+    const std::vector<std::string> given =
+        out_.encoding ? factory_.ask(t, [&] { return spring_memory_names(*out_.encoding); }) : needed;
+    for (const std::string& what : needed)
+      if (std::ranges::find(given, what) == given.end())
+        out_.warnings.push_back(t.full_name("name") + " = \"" + out_.uses.back().name +
+                                "\": the encoding gives springs no \"" + printable(what) +
+                                "\", so this operator changes nothing; set the parameter of [encoding] that does "
+                                "(\"evodevo describe\" tells which), or choose another encoding");
   }
 
   /// Reads the schedule of a devo operator; by default the operator is applied after every cycle.

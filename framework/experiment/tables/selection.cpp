@@ -20,19 +20,20 @@ std::string unreal_type(const Layout& layout) {
   return "";
 }
 
-void check_choice(const TomlReader& t, const Traits& traits, const Choice& choice) {
-  if (choice.survivors && !traits.chooses_survivors)
+/// Throws KeyError if an operator does not choose what it is to choose. `remembers` tells whether it declares a memory.
+void check_choice(const TomlReader& t, const Overrides& has, bool remembers, const Choice& choice) {
+  if (choice.survivors && !has.survivors)
     t.fail("name",
-           "this operator chooses no survivors (its trait chooses_survivors); name it in [selection.parents], and "
+           "this operator chooses no survivors (it overrides no survivors()); name it in [selection.parents], and "
            "another one in [selection.survivors]");
-  if (choice.parents && !traits.chooses_parents)
+  if (choice.parents && !has.parents && !has.children)
     t.fail("name",
-           "this operator chooses no parents (its trait chooses_parents); name it in [selection.survivors], and "
-           "another one in [selection.parents]");
-  if (!choice.survivors && traits.needs_memory)
+           "this operator chooses no parents (it overrides neither parents() nor children()); name it in "
+           "[selection.survivors], and another one in [selection.parents]");
+  if (!choice.survivors && has.survivors && remembers)
     t.fail("name",
-           "this operator needs a memory to breed (its trait needs_memory), which only the operator that chooses the "
-           "survivors has; name it in [selection] for both, or another one in [selection.parents]");
+           "this operator remembers something when it chooses the survivors (its memory()), which another one would "
+           "do here; name it in [selection] for both, or another one in [selection.parents]");
 }
 
 /// Reports if an operator needs a larger population, or more children, than a generation has.
@@ -60,10 +61,8 @@ void check_scores(const TomlReader& t, std::size_t needed, std::size_t given, co
              {"fitness"});
 }
 
-/// Throws KeyError if an operator does not choose what it is to choose. Reports what else keeps it from working in the
-/// experiment.
-void check_traits(const TomlReader& t, const Traits& traits, const Choice& choice, const Experiment& experiment) {
-  check_choice(t, traits, choice);
+/// Reports what else keeps an operator from working in the experiment.
+void check_traits(const TomlReader& t, const Traits& traits, const Experiment& experiment) {
   check_sizes(t, traits, experiment);
   check_scores(t, traits.least_objectives, experiment.objectives.size(), name(Role::objective));
   const auto descriptors = std::count_if(experiment.measures.begin(), experiment.measures.end(),
@@ -85,6 +84,15 @@ void check_notes(const TomlReader& t, const std::vector<NoteTitle>& notes) {
         t.fail("name", "its note's name or unit " + fault);
     if (std::any_of(notes.begin(), note, [&](const NoteTitle& other) { return other.name == note->name; }))
       t.fail("name", "it has two notes \"" + note->name + "\"; rename one of them in notes()");
+  }
+}
+
+void check_lists(const TomlReader& t, const std::vector<std::string>& names) {
+  for (auto name = names.begin(); name != names.end(); ++name) {
+    if (name->empty()) t.fail("name", "this operator remembers a list without a name; name it in memory()");
+    if (const std::string fault = text_fault(*name); !fault.empty()) t.fail("name", "the name of its list " + fault);
+    if (std::find(names.begin(), name, *name) != name)
+      t.fail("name", "it remembers two lists \"" + *name + "\"; rename one of them in memory()");
   }
 }
 
@@ -135,12 +143,15 @@ class SelectionTables {
     TomlWriter writer;
     factory_.write(t, *op, writer);
     for (auto&& [key, value] : writer.take()) record.insert_or_assign(key, value);
-    const Traits traits = factory_.ask(t, [&] { return op->traits(); });
-    check_traits(t, traits, choice, out_);
-    if (choice.parents && traits.makes_children) out_.child_maker = out_.uses.back().name;
-    if (!choice.survivors) return op;
-    out_.notes = factory_.ask(t, [&] { return op->notes(); });
-    check_notes(t, out_.notes);
+    const auto memory = factory_.ask(t, [&] { return op->memory(); });
+    check_choice(t, op->overrides, !memory.empty(), choice);
+    check_lists(t, memory);
+    check_traits(t, factory_.ask(t, [&] { return op->traits(); }), out_);
+    const bool makes_children = choice.parents && op->overrides.children;
+    if (makes_children) out_.child_maker = out_.uses.back().name;
+    if (!choice.survivors && !makes_children) return op;
+    (choice.survivors ? out_.notes : out_.child_notes) = factory_.ask(t, [&] { return op->notes(); });
+    check_notes(t, out_.note_titles());
     return op;
   }
 

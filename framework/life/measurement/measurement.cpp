@@ -164,7 +164,8 @@ std::vector<double> Measurement::score(std::size_t op, std::string_view scenario
                                 .work = window.request.work ? Requested(after.work - before.work) : Requested(),
                                 .samples = Samples(std::move(samples), window.request.channels),
                                 .body = window.within_life() ? nullptr : &life.living.body,
-                                .scenario = scenario};
+                                .scenario = scenario,
+                                .life = life.newborn.life};
   const auto measured = [&] {
     auto scores = fitness.score(observation);
     if (const std::size_t expected = places_[op].size(); scores.size() != expected)

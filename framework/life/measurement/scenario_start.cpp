@@ -51,8 +51,11 @@ void do_damage(double share, Rng& random, LivingBody& living) {
   std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return distance(a) < distance(b); });
   order.resize(static_cast<std::size_t>(std::round(share * static_cast<double>(springs.size()))));
   std::sort(order.begin(), order.end());
-  apply(Edits{.removed_springs = std::move(order)}, living);
-  apply(Edits{.removed_masses = loose_masses(living.body)}, living);
+  Edits damage, loss;
+  for (const std::uint32_t spring : order) damage.remove_spring(spring);
+  apply(damage, living);
+  for (const std::uint32_t mass : loose_masses(living.body)) loss.remove_mass(mass);
+  apply(loss, living);
 }
 
 /// Returns the stream of a test in the lives with this number, which is the same for all individuals.

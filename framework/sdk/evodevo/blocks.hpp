@@ -1,4 +1,5 @@
-// Genomes whose blocks come and go: adding, removing and copying blocks, and matching those of two genomes.
+// Genomes whose blocks come and go: adding, removing, moving and copying blocks, grafting those of another genome, and
+// matching those of two genomes.
 #pragma once
 
 #include <cstdint>
@@ -74,31 +75,162 @@ inline std::uint32_t add_block(Genome& genome, const Layout& layout, std::uint32
   return index;
 }
 
-/// Removes a block, then all blocks that referred to it, and so on. The genome may have fewer blocks afterwards than
-/// the layout allows; see is_within_limits().
-inline void remove_block(Genome& genome, const Layout& layout, std::uint32_t index) {
-  std::vector<std::uint32_t> left = {index};
-  while (!left.empty()) {
-    const std::uint32_t gone = left.back();
-    left.pop_back();
-    const Block block = genome.blocks[gone];
-    const std::uint32_t section = layout.types[block.type].section, begin = layout.section_begin(genome, section);
-    genome.genes.erase(genome.genes.begin() + block.first, genome.genes.begin() + block.first + block.count);
-    genome.blocks.erase(genome.blocks.begin() + gone);
-    for (std::uint32_t& other : left) other -= other > gone;
-    for (std::uint32_t i = 0; i < genome.blocks.size(); ++i) {
-      Block& other = genome.blocks[i];
-      if (i >= gone) other.first -= block.count;
-      if (layout.types[other.type].section != section) continue;
-      for (std::uint32_t gene = 0; gene < other.count; ++gene) {
-        if (!layout.types[other.type].gene(gene).is_reference()) continue;
-        float& target = genome[other.first + gene];
-        if (target == static_cast<float>(gone - begin) && std::find(left.begin(), left.end(), i) == left.end())
-          left.push_back(i);
-        if (target > static_cast<float>(gone - begin)) --target;
-      }
+/// Calls visit(gene, target) for each reference gene of a block, one of layout.blocks(genome): with the index of the
+/// gene in the block and that of the block to which it refers.
+template <class Visit>
+void for_each_reference(const Genome& genome, const Layout& layout, const Block& block, const Visit& visit) {
+  const BlockType& type = layout.types[block.type];
+  for (std::uint32_t gene = 0; gene < block.count; ++gene)
+    if (type.gene(gene).is_reference()) visit(gene, target_of(genome, layout, block, gene));
+}
+
+/// Returns the indices of a block, of all blocks that refer to it, of all that refer to these, and so on, in ascending
+/// order: of a tree whose branches refer to their parents, a branch with all that grow from it; of a network whose
+/// links refer to nodes, a node with its links. They are the blocks that go together (remove_block()).
+inline std::vector<std::uint32_t> referring_blocks(const Genome& genome, const Layout& layout, std::uint32_t block) {
+  const std::vector<Block>& all = layout.blocks(genome);
+  std::vector<std::vector<std::uint32_t>> referring(all.size());
+  for (std::uint32_t i = 0; i < all.size(); ++i)
+    if (layout.types[all[i].type].section == layout.types[all[block].type].section)
+      for_each_reference(genome, layout, all[i], [&](auto, std::uint32_t target) { referring[target].push_back(i); });
+  std::vector<std::uint32_t> found = {block};
+  std::vector<bool> is_found(all.size());
+  is_found[block] = true;
+  for (std::size_t next = 0; next < found.size(); ++next)
+    for (const std::uint32_t other : referring[found[next]]) {
+      if (!is_found[other]) found.push_back(other);
+      is_found[other] = true;
     }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+/// Removes a block, then all blocks that referred to it, and so on. The layout must not be fixed. The genome may have
+/// fewer blocks afterwards than the layout allows; see is_within_limits().
+inline void remove_block(Genome& genome, const Layout& layout, std::uint32_t index) {
+  const std::vector<std::uint32_t> gone = referring_blocks(genome, layout, index);
+  const std::uint32_t section = layout.types[genome.blocks[index].type].section;
+  Genome left;
+  for (std::uint32_t i = 0; i < genome.blocks.size(); ++i) {
+    if (std::binary_search(gone.begin(), gone.end(), i)) continue;
+    Block block = genome.blocks[i];
+    if (layout.types[block.type].section == section)
+      for_each_reference(genome, layout, block, [&](std::uint32_t gene, std::uint32_t target) {
+        genome[block.first + gene] -=
+            static_cast<float>(std::lower_bound(gone.begin(), gone.end(), target) - gone.begin());
+      });
+    const auto first = genome.genes.begin() + block.first;
+    block.first = static_cast<std::uint32_t>(left.size());
+    left.genes.insert(left.genes.end(), first, first + block.count);
+    left.blocks.push_back(block);
   }
+  genome = std::move(left);
+}
+
+/// Moves a block to the index `place` of layout.blocks(genome); the others keep their order, and references follow the
+/// blocks to which they refer. Returns whether it could: false, and the genome stays as it is, if `place` is not in the
+/// section of the block, or if all genomes have the same blocks in this section (Layout::is_fixed()).
+inline bool move_block(Genome& genome, const Layout& layout, std::uint32_t block, std::uint32_t place) {
+  const std::uint32_t section = layout.types[layout.blocks(genome)[block].type].section;
+  if (layout.is_fixed(section)) return false;
+  std::vector<Block>& all = genome.blocks;
+  if (place >= all.size() || layout.types[all[place].type].section != section) return false;
+  const std::uint32_t begin = layout.section_begin(genome, section);
+  const auto moved = [&](std::uint32_t index) {
+    if (index == block) return place;
+    if (block < index && index <= place) return index - 1;
+    return place <= index && index < block ? index + 1 : index;
+  };
+  for (const Block& other : all)
+    if (layout.types[other.type].section == section)
+      for_each_reference(genome, layout, other, [&](std::uint32_t gene, std::uint32_t target) {
+        genome[other.first + gene] = static_cast<float>(moved(target) - begin);
+      });
+  const auto rotate = [&](auto items, std::uint32_t low, std::uint32_t middle, std::uint32_t high) {
+    std::rotate(items + low, items + middle, items + high);
+  };
+  const std::uint32_t low = std::min(block, place), high = std::max(block, place);
+  const std::uint32_t first = all[low].first, last = all[high].first + all[high].count;
+  rotate(genome.genes.begin(), first, block < place ? first + all[block].count : all[block].first, last);
+  rotate(all.begin(), low, block < place ? low + 1 : high, high + 1);
+  for (std::uint32_t i = low, next = first; i <= high; next += all[i++].count) all[i].first = next;
+  return true;
+}
+
+/// Adds copies of some blocks of `from`, a genome of the same layout or `to` itself, at the end of their sections of
+/// `to`, in the order of `blocks` (indices into layout.blocks(from), all different). Each copy has the id of its
+/// original or, if `ids` are given, the one at the same place of `ids`. A reference between the originals becomes one
+/// between the copies; any other goes to the block of `to` with the id of the block to which the original refers.
+/// Returns the indices of the copies in `to`, in the order of `blocks`. Returns nothing, and `to` stays as it is, if
+/// that is impossible: `to` has no such block of the same type to refer to, or has one of the ids already in this
+/// section, or would have more blocks of a type than the layout allows, as always where the layout is fixed.
+inline std::optional<std::vector<std::uint32_t>> insert_blocks(Genome& to, const Genome& from,
+                                                               std::span<const std::uint32_t> blocks,
+                                                               const Layout& layout,
+                                                               std::span<const BlockId> ids = {}) {
+  const std::vector<Block>& originals = layout.blocks(from);
+  const auto id_of = [&](std::size_t i) { return ids.empty() ? originals[blocks[i]].id : ids[i]; };
+  const auto section_of = [&](std::size_t i) { return layout.types[originals[blocks[i]].type].section; };
+  Genome made = to;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const Block& original = originals[blocks[i]];
+    if (count_blocks(made, layout, original.type) >= layout.types[original.type].most ||
+        find_block(made, layout, id_of(i), section_of(i)))
+      return std::nullopt;
+    add_block(made, layout, original.type, std::span(from.genes).subspan(original.first, original.count), id_of(i));
+  }
+  std::vector<std::uint32_t> copies;
+  for (std::size_t i = 0; i < blocks.size(); ++i) copies.push_back(*find_block(made, layout, id_of(i), section_of(i)));
+  bool is_whole = true;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const std::uint32_t begin = layout.section_begin(made, section_of(i)), first = made.blocks[copies[i]].first;
+    for_each_reference(from, layout, originals[blocks[i]], [&](std::uint32_t gene, std::uint32_t target) {
+      const auto copied = static_cast<std::size_t>(std::find(blocks.begin(), blocks.end(), target) - blocks.begin());
+      const auto here =
+          copied < blocks.size() ? copies[copied] : find_block(made, layout, originals[target].id, section_of(i));
+      is_whole = is_whole && here && made.blocks[*here].type == originals[target].type;
+      if (is_whole) made[first + gene] = static_cast<float>(*here - begin);
+    });
+  }
+  if (!is_whole) return std::nullopt;
+  to = std::move(made);
+  return copies;
+}
+
+/// The same for one block, whose copy has another id if `id` is given. Returns the index of the copy.
+inline std::optional<std::uint32_t> insert_block(Genome& to, const Genome& from, std::uint32_t block,
+                                                 const Layout& layout, std::optional<BlockId> id = {}) {
+  const std::uint32_t blocks[] = {block};
+  const BlockId ids[] = {id.value_or(layout.blocks(from)[block].id)};
+  const auto copies = insert_blocks(to, from, blocks, layout, ids);
+  return copies ? std::optional(copies->front()) : std::nullopt;
+}
+
+/// Grafts a block of `from`, a genome of the same layout, on `to`, with all that refers to it (referring_blocks()), and
+/// with those of the blocks to which all these refer that `to` lacks, in turn. Of a tree, this is a branch with all
+/// that grows from it, and with its parents up to the first that `to` has; of a network, a node with its links and,
+/// without other links, the nodes that these join it to. Blocks whose ids `to` has stay as they are in `to`. Returns
+/// the indices of the new blocks in `to`, which have the ids of their originals; none if `to` has them all, as where
+/// the layout is fixed. Returns nothing, and `to` stays as it is, if that is impossible: `to` would have more blocks of
+/// a type than the layout allows, or has a block of another type under the id of one that is referred to.
+inline std::optional<std::vector<std::uint32_t>> graft_block(Genome& to, const Genome& from, std::uint32_t block,
+                                                             const Layout& layout) {
+  const std::vector<Block>& originals = layout.blocks(from);
+  const std::uint32_t section = layout.types[originals[block].type].section;
+  std::vector<std::uint32_t> wanted = referring_blocks(from, layout, block), missing;
+  std::vector<bool> is_wanted(originals.size());
+  for (const std::uint32_t one : wanted) is_wanted[one] = true;
+  for (std::size_t next = 0; next < wanted.size(); ++next) {
+    const std::uint32_t one = wanted[next];
+    if (find_block(to, layout, originals[one].id, section)) continue;
+    missing.push_back(one);
+    for_each_reference(from, layout, originals[one], [&](auto, std::uint32_t target) {
+      if (!is_wanted[target]) wanted.push_back(target);
+      is_wanted[target] = true;
+    });
+  }
+  std::sort(missing.begin(), missing.end());
+  return insert_blocks(to, from, missing, layout);
 }
 
 /// Copies the genes of a block of `from` to the corresponding block of `to`, which has the same type and number of

@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <initializer_list>
+#include <limits>
 #include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "evodevo/encoding.hpp"
@@ -65,37 +67,39 @@ class RequestedRecord {
   std::optional<std::span<const double>> values_ = std::nullopt;
 };
 
+/// Values that a devo operator remembers about one item.
+class RememberedValues {
+ public:
+  RememberedValues() = default;
+  /// `of` says what the item is: "mass", "spring" or "body".
+  RememberedValues(std::span<const double> values, const char* of) : values_(values), of_(of) {}
+
+  /// Returns a value, in the order of the declared names. Throws std::out_of_range if there is no such value.
+  double operator[](std::size_t number) const {
+    if (number >= values_.size())
+      throw std::out_of_range("reads value " + std::to_string(number) + " of " + std::to_string(values_.size()) +
+                              " that it remembers about " + (std::string_view(of_) == "body" ? "the " : "each ") + of_ +
+                              ", numbered from 0; declare it in Devo::" + of_ + "_memory()");
+    return values_[number];
+  }
+  operator std::span<const double>() const { return values_; }  // NOLINT: converts on purpose
+
+ private:
+  std::span<const double> values_;
+  const char* of_ = "item";
+};
+
 /// What a devo operator remembers about masses or springs: the same number of values for each. An operator declares
 /// them in Devo::mass_memory() and Devo::spring_memory().
 class Memory {
  public:
   Memory() = default;
-  /// What is remembered about one item.
-  class Values {
-   public:
-    Values(std::span<const double> values, const char* of) : values_(values), of_(of) {}
-
-    /// Returns a value, in the order of the declared names. Throws std::out_of_range if there is no such value.
-    double operator[](std::size_t number) const {
-      if (number >= values_.size())
-        throw std::out_of_range("reads value " + std::to_string(number) + " of " + std::to_string(values_.size()) +
-                                " that it remembers about each " + of_ +
-                                ", numbered from 0; declare it in Devo::" + of_ + "_memory()");
-      return values_[number];
-    }
-    operator std::span<const double>() const { return values_; }  // NOLINT: converts on purpose
-
-   private:
-    std::span<const double> values_;
-    const char* of_;
-  };
-
   /// `values` has `width` values for each item, one item after the other. `of` says what an item is, "mass" or
   /// "spring".
   Memory(std::span<const double> values, std::size_t width, const char* of) : values_(values), width_(width), of_(of) {}
 
   /// Returns the values of one item. Throws std::out_of_range if there is no such item, or if nothing is remembered.
-  Values operator[](std::size_t item) const {
+  RememberedValues operator[](std::size_t item) const {
     if (width_ == 0)
       throw std::out_of_range(std::string("reads what it remembers about each ") + of_ + ", but Devo::" + of_ +
                               "_memory() declares nothing");
@@ -195,11 +199,14 @@ struct DevoContext {
   RequestedRecord load{"load", "mass"};        ///< sum of the stress of the springs at each mass, in the unit of stress
   Memory mass_memory = {};    ///< what this operator remembers about each mass of `body`; see Devo::mass_memory()
   Memory spring_memory = {};  ///< what this operator remembers about each spring of `body`
-  double first_time = 0;      ///< simulated time from birth to the first application of this operator, s
-  double last_time = 0;       ///< simulated time from birth to its last application, s
+  RememberedValues body_memory = {};  ///< what this operator remembers about the body as a whole
+  double first_time = 0;              ///< simulated time from birth to the first application of this operator, s
+  double last_time = 0;               ///< simulated time from birth to its last application, s
   std::span<const std::uint64_t> identities = {};  ///< of the masses of `body`; see identity()
   std::span<const std::uint32_t> daughters = {};   ///< number of daughters that each mass has had; see NewMass::mother
   Draws draws = {};                                ///< random numbers of this application; see draw()
+  std::string_view scenario = {};  ///< name of the scenario of this life; empty: the experiment's own scene
+  std::uint32_t life = 1;          ///< number of this life of the individual, from 1
 
   /// Returns the identity of a mass, which is the same in all individuals that have inherited the mass: that which the
   /// encoding gave it, or its index in the blueprint. That of a daughter follows from her mother's and from how many
@@ -231,34 +238,39 @@ struct DevoContext {
   }
 };
 
+/// Stands for an edit without a cause.
+inline constexpr double no_cause = std::numeric_limits<double>::quiet_NaN();
+
+/// The kinds of edits of masses and springs.
+enum class EditKind : std::uint8_t { removed_spring, removed_mass, changed_spring, new_mass, new_spring };
+inline constexpr std::array edit_kinds{EditKind::removed_spring, EditKind::removed_mass, EditKind::changed_spring,
+                                       EditKind::new_mass, EditKind::new_spring};
+
+/// The removal of a mass or a spring.
+struct Removal {
+  std::uint32_t index = 0;
+  double cause = no_cause;
+};
+
+/// A new mass. Its velocity is zero at first.
 struct NewMass {
-  Vec3 position;                               ///< initial position, m; the initial velocity is zero
-  double mass = 0;                             ///< kg
+  Vec3 position = {};                          ///< m
+  std::optional<double> mass = {};             ///< kg; if not given, DevoContext::mass
   std::int32_t material = no_material;         ///< index into DevoContext::body.materials, or no_material
   std::optional<std::uint32_t> mother = {};    ///< index of the mass from which it descends; none: it is a newcomer
   std::optional<std::uint64_t> identity = {};  ///< see DevoContext::identity(); if not given, the host derives it
-};
-
-/// A material itself, for places where the index of one would compile, too, and be taken for a stiffness.
-struct GivenMaterial : Material {
-  GivenMaterial() = default;
-  GivenMaterial(const Material& material) : Material(material) {}
-  /// From the members of Material, in their order and units.
-  GivenMaterial(double k, double change, double hertz = 0, double radians = 0, double ratio = 0)
-      : Material{k, change, hertz, radians, ratio} {}
-  template <class Number>
-  requires std::is_arithmetic_v<Number> GivenMaterial(Number index)
-  = delete;  // an index is no material: give body.materials[index]
+  double cause = no_cause;
 };
 
 struct NewSpring {
   std::uint32_t a = 0, b = 0;  ///< indices of the two masses; see Edits
-  GivenMaterial material;
-  std::optional<double> rest_length;  ///< m; if not given, the length at which the new spring exerts no force
-  double stiffness_factor = 1;        ///< stiffness relative to that of the material, 1
-  /// Spring::phase_growth, rad. A spring that takes over the material of another one takes over this as well: if
-  /// ballistic development is changing the phase of that material, it will come to its end on both springs.
-  float phase_growth = 0;
+  Material material = {};
+  std::optional<double> rest_length = {};  ///< m; if not given, the length at which the new spring exerts no force
+  double stiffness_factor = 1;             ///< stiffness relative to that of the material, 1
+  /// The spring of the body whose nature it takes over: all operators remember about the new spring what they remember
+  /// about this one. If none is given, they remember 0.
+  std::optional<std::uint32_t> like = {};
+  double cause = no_cause;
 };
 
 /// New properties of an existing spring, which continues to join the same two masses.
@@ -267,50 +279,121 @@ struct ChangedSpring {
   std::optional<double> rest_length = {};       ///< new rest length, m; if not given, it stays the same
   std::optional<Material> material = {};        ///< new material; if not given, it stays the same
   std::optional<double> stiffness_factor = {};  ///< new stiffness relative to that of the material, 1; likewise
+  double cause = no_cause;
 };
 
-/// One step in the linear growth of all springs. Over its whole growth, a spring's rest length changes linearly from L
-/// to Spring::growth * L, where L is the rest length at birth. The host multiplies the present rest length by the ratio
-/// of the lengths after and before this step, so that other changes of the rest length are preserved.
-struct Growth {
-  double from = 0, to = 0;  ///< progress of the growth before and after this step, 0 to `whole`
-  double whole = 1;         ///< progress at which growth is complete, for example the number of applications
+/// One step of a change of all rest lengths by one rule. In the whole change, the rest length of a spring goes linearly
+/// from L to (1 + x) L, where x is a number that the operator remembers about the spring. The host multiplies the
+/// present rest length by the ratio of the lengths after and before this step, so that other changes of the rest length
+/// are preserved.
+struct Scaling {
+  std::uint32_t number = 0;  ///< which of the numbers in Devo::spring_memory() is x, 1; it must be above -1
+  double from = 0, to = 0;   ///< progress of the change before and after this step, 0 to `whole`
+  double whole = 1;          ///< progress at which the change is complete, for example the number of applications
 };
 
-/// The number that caused each edit, for example the stress of a spring that is removed. The host stores causes in the
-/// record of the life; they have no effect on the body. Each list is either empty or has one number for each edit of
-/// its kind, in the order of the edits. Devo::measure() gives the name and unit of the numbers in a list.
-struct Causes {
-  std::vector<double> removed_springs, removed_masses, changed_springs, new_masses, new_springs;
+/// What an operator remembers from now on about some items, or about the body.
+struct MemoryEdits {
+  std::vector<std::uint32_t> items;  ///< indices
+  std::vector<std::size_t> counts;   ///< [items] number of values
+  std::vector<double> values;        ///< those of each item, one item after the other
 
-  using List = std::vector<double> Causes::*;
-  static constexpr std::array lists{&Causes::removed_springs, &Causes::removed_masses, &Causes::changed_springs,
-                                    &Causes::new_masses, &Causes::new_springs};
+  void set(std::uint32_t item, std::span<const double> of_item) {
+    items.push_back(item);
+    counts.push_back(of_item.size());
+    values.insert(values.end(), of_item.begin(), of_item.end());
+  }
 };
 
-/// The changes that a devo operator requests. Indices of masses and springs refer to DevoContext::body; if that body
-/// has n masses, then index n + i refers to the new mass i in `new_masses`. The host applies an operator's edits
-/// together after the call. The host refuses dangling springs, duplicate springs, springs of air, and numbers that are
-/// not finite.
-struct Edits {
-  std::optional<Growth> growth;  ///< growth of all springs; a rest length given in `changed_springs` overrides it
-  std::vector<std::uint32_t> removed_springs;  ///< an index may occur more than once
-  std::vector<std::uint32_t> removed_masses;   ///< the host also removes the springs of these masses
-  std::vector<ChangedSpring> changed_springs;  ///< changes of springs that are not removed
-  std::vector<NewMass> new_masses;
-  std::vector<NewSpring> new_springs;
-  Causes causes;
-  /// What the operator remembers from now on, in the order of its names: the values of each mass of DevoContext::body,
-  /// then those of each of `new_masses`. If it is empty, the masses of the body keep theirs, and new masses start at 0.
-  std::vector<double> mass_memory = {};
-  /// Likewise for each spring of the body, then for each of `new_springs`.
-  std::vector<double> spring_memory = {};
+/// The changes that a devo operator requests. Indices of masses and springs refer to DevoContext::body. A new mass or
+/// spring has the next index after those of the body and those added before it; so a new spring can join a new mass.
+/// The host applies an operator's edits together after the call. The host refuses dangling springs, duplicate springs,
+/// springs of air, and numbers that are not finite, with a message that names the operator, the cycle and the item.
+///
+/// Every edit may have a cause: the number that caused it, for example the stress of a spring that is removed. The host
+/// stores causes in the record of the life; they have no effect on the body. Devo::measure() gives their name and unit.
+class Edits {
+ public:
+  Edits() = default;
+  /// Edits of a body with this many masses and springs.
+  Edits(std::size_t masses, std::size_t springs)
+      : masses_(static_cast<std::uint32_t>(masses)), springs_(static_cast<std::uint32_t>(springs)) {}
+  explicit Edits(const Body& body) : Edits(body.masses.size(), body.springs.size()) {}
+
+  /// Removes a spring; for example remove_spring(s, {.cause = context.stress[s]}). It may be removed more than once.
+  void remove_spring(std::uint32_t spring, Removal removal = {}) {
+    removal.index = spring;
+    removed_springs.push_back(removal);
+  }
+  /// Removes a mass and its springs. It may be removed more than once.
+  void remove_mass(std::uint32_t mass, Removal removal = {}) {
+    removal.index = mass;
+    removed_masses.push_back(removal);
+  }
+  /// Changes a spring that is not removed, once; for example change_spring(s, {.rest_length = 0.5}).
+  void change_spring(std::uint32_t spring, ChangedSpring change) {
+    change.spring = spring;
+    changed_springs.push_back(change);
+  }
+  /// Joins two masses by a new spring, and returns its index; for example join(a, b, body.materials[0]).
+  std::uint32_t join(std::uint32_t a, std::uint32_t b, const Material& material, NewSpring spring = {}) {
+    spring.a = a, spring.b = b;
+    spring.material = material;
+    new_springs.push_back(spring);
+    return springs_ + static_cast<std::uint32_t>(new_springs.size()) - 1;
+  }
+  template <class Number>
+  requires std::is_arithmetic_v<Number> std::uint32_t join(std::uint32_t, std::uint32_t, Number, NewSpring = {})
+  = delete;  // an index is no material: give body.materials[index]
+  /// Adds a mass at a position (m), and returns its index.
+  std::uint32_t add_mass(const Vec3& position, NewMass mass = {}) {
+    mass.position = position;
+    new_masses.push_back(mass);
+    return masses_ + static_cast<std::uint32_t>(new_masses.size()) - 1;
+  }
+  /// Does the same; the new mass descends from another one, so that its identity follows from that of its mother.
+  std::uint32_t divide(std::uint32_t mother, const Vec3& position, NewMass daughter = {}) {
+    daughter.mother = mother;
+    return add_mass(position, daughter);
+  }
+  /// Changes the rest lengths of all springs by one rule; a rest length that change_spring() gives overrides it.
+  void scale_lengths(const Scaling& by) { scaling = by; }
+
+  /// Sets what the operator remembers about a mass or a spring of the body, or about a new one: a value for each name
+  /// of Devo::mass_memory() or Devo::spring_memory(). For other items of the body, it stays the same; for new items, it
+  /// is 0 or that of NewSpring::like.
+  void remember_mass(std::uint32_t mass, std::span<const double> values) { mass_memory.set(mass, values); }
+  void remember_mass(std::uint32_t mass, std::initializer_list<double> values) {
+    mass_memory.set(mass, {values.begin(), values.size()});
+  }
+  void remember_spring(std::uint32_t spring, std::span<const double> values) { spring_memory.set(spring, values); }
+  void remember_spring(std::uint32_t spring, std::initializer_list<double> values) {
+    spring_memory.set(spring, {values.begin(), values.size()});
+  }
+  /// Sets what the operator remembers about the body: a value for each name of Devo::body_memory().
+  void remember_body(std::vector<double> values) { body_memory = std::move(values); }
+
+  /// Gives the body up: its evaluation ends as `invalid`, for this reason.
+  void give_up(std::string why) { failure = std::move(why); }
 
   /// Whether the body stays as it is.
   bool empty() const {
-    return !growth && removed_springs.empty() && removed_masses.empty() && changed_springs.empty() &&
+    return !scaling && removed_springs.empty() && removed_masses.empty() && changed_springs.empty() &&
            new_masses.empty() && new_springs.empty();
   }
+
+  // what these functions have collected, for the host
+  std::vector<Removal> removed_springs, removed_masses;
+  std::vector<ChangedSpring> changed_springs;
+  std::vector<NewMass> new_masses;
+  std::vector<NewSpring> new_springs;
+  std::optional<Scaling> scaling;
+  MemoryEdits mass_memory, spring_memory;
+  std::optional<std::vector<double>> body_memory;
+  std::optional<std::string> failure;  ///< why the body was given up, if it was
+
+ private:
+  std::uint32_t masses_ = 0, springs_ = 0;  ///< of the body
 };
 
 /// Number of random pairs of masses to try for each new spring before giving up because too many pairs are joined
@@ -328,17 +411,17 @@ class Devo : public Operator {
 
   /// Returns the records that develop() needs. The host calls this function after it has set the parameters.
   virtual RecordRequest observes() const { return {.stress = true}; }
-  /// Returns the name and unit of the causes in a list. If the probe is skip-shift, the host reports points, not N.
-  virtual Measure measure([[maybe_unused]] Causes::List list) const { return {"stress", "N"}; }
-  /// Returns whether the operator sets Edits::growth or follows Spring::phase_growth. Growth has an effect only if
-  /// Encoding::sets_growth() is true.
-  virtual bool uses_growth() const { return false; }
+  /// Returns the name and unit of the causes of a kind of edit. If the probe is skip-shift, the host reports points,
+  /// not N.
+  virtual Measure measure([[maybe_unused]] EditKind edit) const { return {"stress", "N"}; }
   /// Returns the names of the numbers that the operator remembers about each mass. The host keeps them from cycle to
   /// cycle and through all edits. At birth they are those that the encoding gives under the same names
-  /// (Blueprint::mass_memory), otherwise 0.
+  /// (Blueprint::mass_memory), otherwise 0. If the encoding must give them, Traits::needs_at_birth names them.
   virtual std::vector<std::string> mass_memory() const { return {}; }
-  /// Likewise about each spring; they are 0 at birth.
+  /// Likewise about each spring (Blueprint::spring_memory).
   virtual std::vector<std::string> spring_memory() const { return {}; }
+  /// Likewise about the body as a whole; they are 0 at birth.
+  virtual std::vector<std::string> body_memory() const { return {}; }
   /// Declares genes that the operator owns, so that the rule of development evolves together with the bodies.
   virtual Layout layout([[maybe_unused]] const EncodingContext& context) const { return {}; }
   /// Returns the genes that it owns for a first genome. `own` is the layout that it declares.

@@ -31,13 +31,6 @@ struct EncodingContext {
   }
 };
 
-/// The size of a mass, which scales its springs: the rest length of a spring is the distance between the rest positions
-/// of its two masses, times the mean of their sizes.
-struct Size {
-  double start = 1;  ///< size at birth
-  double end = 1;    ///< size at the end of a ballistic development
-};
-
 /// The result of an encoding. To make a body from it, the host joins neighbours, drops springs of air and masses
 /// without springs, keeps the largest connected piece, and puts that piece on the floor.
 struct Blueprint {
@@ -47,11 +40,13 @@ struct Blueprint {
   std::string failure;  ///< reason why there is no body; empty if there is one
   std::vector<Vec3> paired_at = {};  ///< positions, one for each mass, from which the nearest masses are determined;
                                      ///< empty: the rest positions
-  std::vector<Size> sizes = {};  ///< sizes, one for each mass, for the springs that join `neighbours`; empty: all are 1
   std::vector<Vec3> origins = {};  ///< the point that the encoding mapped to each mass, for pictures; empty: no points
   /// What masses remember at birth: a number for each mass by name. Devo operators take those that they have declared
   /// under the same name (Devo::mass_memory).
   std::map<std::string, std::vector<double>> mass_memory = {};
+  /// Likewise what springs remember: a number for each spring of `body` by name (Devo::spring_memory). Only names that
+  /// Encoding::spring_memory() declares may be given.
+  std::map<std::string, std::vector<double>> spring_memory = {};
   /// Identities of the masses (DevoContext::identity()), all different; empty: the indices in `body`. To be given if
   /// the same mass can have another index in a relative.
   std::vector<std::uint64_t> identities = {};
@@ -69,9 +64,12 @@ class Encoding : public Operator {
   /// Turns a genome into a blueprint, or into the reason why there is no body (Blueprint::failure). `layout` is what
   /// layout() returned.
   virtual Blueprint decode(const Genome& genome, const Layout& layout, const EncodingContext& context) const = 0;
-  /// Returns whether springs may grow, that is, whether decode() sets Blueprint::sizes, Spring::growth or
-  /// Spring::phase_growth.
-  virtual bool sets_growth() const { return false; }
+  /// Completes a blueprint whose `neighbours` the host has joined. Springs have the distance of the rest positions for
+  /// rest length, and the mean material of their masses; the encoding may change this, and give springs memory or set
+  /// Blueprint::failure. It must not add or remove masses or springs.
+  virtual void joined([[maybe_unused]] Blueprint& blueprint) const {}
+  /// Returns the names of what decode() or joined() give springs to remember (Blueprint::spring_memory).
+  virtual std::vector<std::string> spring_memory() const { return {}; }
 };
 
 }  // namespace evodevo

@@ -57,6 +57,7 @@ struct Observation {
   const Body* body = nullptr;
   /// Name of the scenario; empty if the experiment has none, and within the life in the experiment's own scene.
   std::string_view scenario;
+  std::uint32_t life = 1;  ///< number of the life of the individual, from 1
 };
 
 /// What a score is for.

@@ -64,11 +64,27 @@ struct BlockType {
   std::uint32_t least = 0, most = 0;         ///< smallest and largest number of such blocks in a genome
   std::vector<std::string> gene_names = {};  ///< names of the genes, for reports; those left out have numbers
   std::uint32_t section = 0;                 ///< index into Layout::sections; set by the host
+  /// Names of the options of choice genes, for reports: an item for each of `genes`, which is empty if its options have
+  /// numbers alone; those left out are empty. name_options() sets them.
+  std::vector<std::vector<std::string>> option_names = {};
 
   /// Whether all genomes have the same number of such blocks.
   bool is_fixed() const { return least == most; }
   /// The description of a gene of a block, counted from 0.
   const GeneSpec& gene(std::size_t index) const { return genes[std::min(index, genes.size() - 1)]; }
+  /// The names of the options of a gene of a block, counted from 0, in the order of their numbers; empty if they have
+  /// none.
+  std::span<const std::string> options(std::size_t index) const {
+    index = std::min(index, genes.size() - 1);
+    return index < option_names.size() ? std::span<const std::string>(option_names[index])
+                                       : std::span<const std::string>{};
+  }
+  /// Names the options of the choice gene at index `gene` of `genes`: as many different names as it has options. The
+  /// host refuses a layout in which they are others.
+  void name_options(std::size_t gene, std::vector<std::string> names) {
+    option_names.resize(std::max(option_names.size(), gene + 1));
+    option_names[gene] = std::move(names);
+  }
 
   bool operator==(const BlockType&) const = default;
 };
@@ -138,6 +154,11 @@ struct Layout {
   /// Whether all genomes have the same blocks, those of `first_blocks`.
   bool is_fixed() const {
     return std::all_of(types.begin(), types.end(), [](const BlockType& type) { return type.is_fixed(); });
+  }
+  /// Whether all genomes have the same blocks in a section, those of `first_blocks`, in the same order.
+  bool is_fixed(std::uint32_t section) const {
+    return std::all_of(types.begin(), types.end(),
+                       [&](const BlockType& type) { return type.section != section || type.is_fixed(); });
   }
   /// The number of genes of a first genome.
   std::size_t first_size() const {

@@ -18,14 +18,18 @@ struct Types {
   std::uint32_t node = 0, link = 0;
 };
 
-/// Adds both types to a layout. Weights and biases are in [-range, range]; a genome has at most `nodes` nodes, inputs
-/// and outputs included, and `links` links.
-inline Types add_types(Layout& layout, float range, std::uint32_t functions, std::uint32_t nodes, std::uint32_t links) {
+/// Adds both types to a layout. Weights and biases are in [-range, range]; `functions` has the names of the activation
+/// functions that a node may have; a genome has at most `nodes` nodes, inputs and outputs included, and `links` links.
+inline Types add_types(Layout& layout, float range, std::vector<std::string> functions, std::uint32_t nodes,
+                       std::uint32_t links) {
   const GeneSpec number{-range, range};
   const auto node = static_cast<std::uint32_t>(layout.types.size());
-  layout.add_type({"node", {number, {0, 0, functions}}, 0, nodes, {"bias", "function"}});
+  const auto count = static_cast<std::uint32_t>(functions.size());
+  layout.add_type({"node", {number, {0, 0, count}}, 0, nodes, {"bias", "function"}});
+  layout.types[node].name_options(function, std::move(functions));
   const GeneSpec is_on{0, 0, 2}, reference{.refers_to = node};
   layout.add_type({"link", {number, is_on, reference, reference}, 0, links, {"weight", "on", "from", "to"}});
+  layout.types[node + 1].name_options(on, {"off", "on"});
   return {node, node + 1};
 }
 

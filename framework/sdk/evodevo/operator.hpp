@@ -20,14 +20,8 @@ struct Traits {
   std::vector<std::string> block_types = {};
   /// Selection: the row with the best first score always lives on.
   bool is_elitist = true;
-  /// Selection: whether it can choose parents, or make children instead, and whether it can choose survivors.
-  bool chooses_parents = true, chooses_survivors = true;
-  /// Selection: it makes the children itself. The experiment then has neither mutation nor crossover.
-  bool makes_children = false;
   /// Selection: it works on genomes that have the same blocks in all individuals, and real genes alone.
   bool needs_real_genes = false;
-  /// Selection: couples() or children() depends on the memory, which only the operator that chooses the survivors has.
-  bool needs_memory = false;
   /// Selection: the smallest numbers of objectives and of descriptors with which it can work.
   std::uint32_t least_objectives = 1, least_descriptors = 0;
   /// Selection: the smallest population, and the smallest number of children of a generation, with which it can work.
@@ -37,6 +31,9 @@ struct Traits {
   /// Devo: with inherited draws and the same records, a body with one mass less gets the same edits, but for those that
   /// concern that mass or its springs, and at most so many others. Nothing: not claimed.
   std::optional<std::uint32_t> locality = {};
+  /// Devo: what it must remember about springs at birth, by the names of Devo::spring_memory(). With an encoding that
+  /// does not give this (Encoding::spring_memory), it changes nothing.
+  std::vector<std::string> needs_at_birth = {};
 };
 
 /// The base class of all operators. An operator holds its parameters, what prepare() computes from them, and no other

@@ -23,7 +23,7 @@ namespace evodevo {
 inline constexpr std::uint64_t plugin_magic = 0x6f7665646f7665ull;  // "evodevo", little-endian
 /// Version of the interface. It must be raised whenever a declaration that plugins see changes its meaning, or is
 /// changed, moved, added or removed; tests/host/plugin_border_test.cpp finds changed declarations.
-inline constexpr std::uint32_t plugin_epoch = 20;
+inline constexpr std::uint32_t plugin_epoch = 21;
 
 /// Returns a hash of the sizes of structs.
 template <class... Structs>
@@ -36,10 +36,11 @@ constexpr std::uint32_t digest_of_sizes() {
 /// A hash of the sizes of all structs that host and plugin exchange.
 inline constexpr std::uint32_t plugin_struct_digest =
     digest_of_sizes<Body, Mass, Spring, Material, State, Rng, GeneSpec, BlockType, Block, Genome, Layout, Parents,
-                    EncodingContext, Blueprint, DevoContext, Edits, NewMass, NewSpring, ChangedSpring, RecordRequest,
-                    Measure, Request, Observation, Samples, StoredSample, BodyVersion, Objective, Candidate,
-                    SelectionContext, Case, NoteTitle, Note, Survival, Child, Size, Growth, Causes, Traits, Parameter,
-                    InputFile, Range, Box, Vec3>();
+                    VariationContext, EncodingContext, Blueprint, DevoContext, Edits, NewMass, NewSpring, ChangedSpring,
+                    RecordRequest, Measure, Request, Observation, Samples, StoredSample, BodyVersion, Objective,
+                    Candidate, SelectionContext, SelectionMemory, Case, NoteTitle, Note, ChildNote, Couple, Survival,
+                    Child, Offspring, Selection, Removal, Scaling, MemoryEdits, Traits, Parameter, InputFile, Range,
+                    Box, Vec3>();
 
 #define EVODEVO_TEXT_(x) #x
 #define EVODEVO_TEXT(x) EVODEVO_TEXT_(x)
@@ -85,16 +86,51 @@ struct PluginManifest {
   std::size_t entry_count;
 };
 
+/// Returns which functions of Selection the selection operator class `T` overrides.
+template <class T>
+constexpr Overrides overrides_of() {
+  static_assert(
+      std::is_convertible_v<decltype(&T::parents),
+                            std::vector<Couple> (T::*)(const SelectionContext&, std::uint32_t, Rng&) const> &&
+          std::is_convertible_v<decltype(&T::survivors),
+                                Survival (T::*)(const SelectionContext&, std::uint32_t, Rng&) const> &&
+          std::is_convertible_v<decltype(&T::children),
+                                Offspring (T::*)(const SelectionContext&, std::uint32_t, Rng&) const>,
+      "evodevo: the selection operator declares parents(), survivors() or children() otherwise than Selection; write "
+      "override behind each function to see which one");
+  constexpr Overrides found = {!std::is_same_v<decltype(&T::parents), decltype(&Selection::parents)>,
+                               !std::is_same_v<decltype(&T::survivors), decltype(&Selection::survivors)>,
+                               !std::is_same_v<decltype(&T::children), decltype(&Selection::children)>};
+  static_assert(found.parents || found.survivors || found.children,
+                "evodevo: the selection operator does nothing; override parents(), survivors() or children()");
+  static_assert(!found.parents || !found.children,
+                "evodevo: the selection operator overrides parents() and children(), of which only one is called; "
+                "override parents() to choose couples, or children() to make the children itself");
+  return found;
+}
+
+/// Returns a new operator of class `T`.
+template <class T>
+Operator* new_operator() {
+  T* op = new T;
+  if constexpr (std::is_base_of_v<Selection, T>) op->overrides = overrides_of<T>();
+  return op;
+}
+
 /// Returns the entry of operator class `T`.
 template <class T>
 constexpr OperatorEntry operator_entry(const char* name, const char* summary) {
-  static_assert(!std::is_abstract_v<T>,
+  static_assert(
+      !varies_by_layout<T>,
+      "evodevo: since ABI epoch 21, mutate() and cross() get a VariationContext in place of the Layout: write "
+      "`const VariationContext& context` in place of `const Layout& layout`, and context.layout in the body");
+  static_assert(varies_by_layout<T> || !std::is_abstract_v<T>,
                 "evodevo: the operator lacks a function, or declares it otherwise than its kind; look for a missing "
                 "const, and write override behind each function to see which one");
   if constexpr (std::is_abstract_v<T>)
     return {};
   else
-    return {T::kind.data(), name, summary, []() -> Operator* { return new T; }};
+    return {T::kind.data(), name, summary, new_operator<T>};
 }
 
 }  // namespace evodevo

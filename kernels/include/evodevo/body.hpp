@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -14,6 +15,10 @@ namespace evodevo {
 /// A position (m), velocity (m/s) or direction (1).
 struct Vec3 {
   double x = 0, y = 0, z = 0;
+
+  /// The coordinate along an axis: x for 0, y for 1, z for 2. The index is not checked; any other gives z.
+  double& operator[](std::size_t axis) { return axis == 0 ? x : axis == 1 ? y : z; }
+  double operator[](std::size_t axis) const { return axis == 0 ? x : axis == 1 ? y : z; }
 
   friend Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
   friend Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
@@ -30,6 +35,11 @@ struct Vec3 {
 
 inline double dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 inline double norm(Vec3 a) { return std::sqrt(dot(a, a)); }
+/// The vector of length 1 in the same direction; a vector of length 0, which has no direction, stays as it is.
+inline Vec3 normalised(Vec3 a) {
+  const double length = norm(a);
+  return length == 0 ? a : a / length;
+}
 inline Vec3 cross(Vec3 a, Vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
 
 /// An axis-aligned box (m).
@@ -88,10 +98,8 @@ struct Spring {
   std::uint32_t a = 0, b = 0;   ///< indices into Body::masses, a != b
   double rest_length = 0;       ///< L0, m
   std::uint32_t material = 0;   ///< index into Body::materials
-  float growth = 1;             ///< rest length at the end of ballistic development relative to that at birth, 1
   double first_length = 0;      ///< L0 when the spring was made, at birth or later, m; set by the host
   double stiffness_factor = 1;  ///< stiffness relative to that of the material, 1; above 0
-  float phase_growth = 0;       ///< phase at the end of ballistic development minus that at birth, rad
 };
 
 /// A body without its motion. Springs that join the same pair of masses act in parallel; only encodings that ask for

@@ -26,7 +26,8 @@ class AdaptiveReset final : public evodevo::Mutation {
     return {static_cast<float>(std::log(rate_))};
   }
 
-  void mutate(evodevo::Genome& genome, const evodevo::Layout& layout, evodevo::Rng& rng) const override {
+  void mutate(evodevo::Genome& genome, const evodevo::VariationContext& context, evodevo::Rng& rng) const override {
+    const evodevo::Layout& layout = context.layout;
     float& log_rate = layout.own_genes(genome)[0];
     log_rate = std::clamp(log_rate + static_cast<float>(learning_rate_ * rng.normal()), smallest, 0.0F);
     const double rate = std::exp(double{log_rate});

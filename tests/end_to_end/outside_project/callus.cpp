@@ -15,7 +15,7 @@ class Callus final : public evodevo::Devo {
  public:
   evodevo::Traits traits() const override { return {.locality = 3}; }  // another spring is supported: mass and springs
   evodevo::RecordRequest observes() const override { return {.contact = true}; }
-  evodevo::Measure measure(evodevo::Causes::List) const override { return {"wear", "1"}; }
+  evodevo::Measure measure(evodevo::EditKind) const override { return {"wear", "1"}; }
   std::vector<std::string> mass_memory() const override { return {"wear"}; }
   std::vector<std::string> spring_memory() const override { return {"times"}; }
 
@@ -26,40 +26,36 @@ class Callus final : public evodevo::Devo {
   }
 
   void develop(const evodevo::DevoContext& context, evodevo::Edits& edits, evodevo::Rng&) const override {
-    for (std::size_t mass = 0; mass < context.body.masses.size(); ++mass)
-      edits.mass_memory.push_back((context.mass_memory[mass][0] + context.contact[mass]) / 2);
+    std::vector<double> wear;
+    for (std::uint32_t mass = 0; mass < context.body.masses.size(); ++mass) {
+      wear.push_back((context.mass_memory[mass][0] + context.contact[mass]) / 2);
+      edits.remember_mass(mass, {wear[mass]});
+    }
+    std::optional<std::uint32_t> twice;  // the first spring that has become stiffer twice
     for (std::uint32_t s = 0; s < context.body.springs.size(); ++s) {
       const Spring& spring = context.body.springs[s];
-      const double wear = std::max(edits.mass_memory[spring.a], edits.mass_memory[spring.b]);
-      edits.spring_memory.push_back(context.spring_memory[s][0]);
-      if (wear <= context.own[0] || spring.stiffness_factor > 4) continue;
-      if (context.draw(spring.a, spring.b, "hardens") > 0.8) continue;
-      edits.changed_springs.push_back(
-          {.spring = s, .stiffness_factor = (1 + context.own[1]) * spring.stiffness_factor});
-      edits.causes.changed_springs.push_back(wear);
-      edits.spring_memory[s] += 1;
+      const double worn = std::max(wear[spring.a], wear[spring.b]);
+      double times = context.spring_memory[s][0];
+      if (worn > context.own[0] && spring.stiffness_factor <= 4 && context.draw(spring.a, spring.b, "hardens") <= 0.8) {
+        edits.change_spring(s, {.stiffness_factor = (1 + context.own[1]) * spring.stiffness_factor, .cause = worn});
+        edits.remember_spring(s, {++times});
+      }
+      if (times == 2 && !twice) twice = s;
     }
-    support(context, edits);
+    if (twice)
+      support(*twice, (wear[context.body.springs[*twice].a] + wear[context.body.springs[*twice].b]) / 2, context,
+              edits);
   }
 
  private:
-  /// Supports the first spring that has become stiffer twice.
-  static void support(const evodevo::DevoContext& context, evodevo::Edits& edits) {
-    const auto twice = std::find(edits.spring_memory.begin(), edits.spring_memory.end(), 2);
-    if (twice == edits.spring_memory.end()) return;
-    const Spring& spring = context.body.springs[static_cast<std::size_t>(twice - edits.spring_memory.begin())];
-    const double wear = (edits.mass_memory[spring.a] + edits.mass_memory[spring.b]) / 2;
-    const auto middle = static_cast<std::uint32_t>(context.body.masses.size());
-    edits.new_masses.push_back({.position = 0.5 * (context.position(spring.a) + context.position(spring.b)),
-                                .mass = context.mass,
-                                .mother = std::min(spring.a, spring.b)});
-    edits.causes.new_masses.push_back(wear);
-    edits.mass_memory.push_back(wear);
-    for (const std::uint32_t end : {spring.a, spring.b}) {
-      edits.new_springs.push_back({end, middle, context.body.materials[spring.material], {}, spring.stiffness_factor});
-      edits.causes.new_springs.push_back(wear);
-      edits.spring_memory.push_back(0);
-    }
+  static void support(std::uint32_t index, double wear, const evodevo::DevoContext& context, evodevo::Edits& edits) {
+    const Spring& spring = context.body.springs[index];
+    const std::uint32_t middle = edits.divide(
+        std::min(spring.a, spring.b), 0.5 * (context.position(spring.a) + context.position(spring.b)), {.cause = wear});
+    edits.remember_mass(middle, {wear});
+    for (const std::uint32_t end : {spring.a, spring.b})
+      edits.join(end, middle, context.body.materials[spring.material],
+                 {.stiffness_factor = spring.stiffness_factor, .cause = wear});
   }
 };
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "evodevo/helpers/rows.hpp"
-#include "evodevo/helpers/selection/memory.hpp"
 #include "evodevo/plugin.hpp"
 
 namespace {
@@ -17,13 +16,12 @@ class CrossEntropy final : public evodevo::Selection {
     p.real(rate_, "rate", {0.01, 1, "1"}, "Part of the way that it moves.");
   }
 
-  evodevo::Traits traits() const override {
-    return {.makes_children = true, .needs_real_genes = true, .needs_memory = true};
-  }
+  evodevo::Traits traits() const override { return {.needs_real_genes = true}; }
   std::vector<evodevo::NoteTitle> notes() const override { return {{"distance from the mean"}}; }
+  std::vector<std::string> memory() const override { return {"mean", "deviation"}; }
 
-  std::vector<evodevo::Child> children(const evodevo::SelectionContext& context, std::uint32_t count,
-                                       evodevo::Rng& rng) const override {
+  evodevo::Offspring children(const evodevo::SelectionContext& context, std::uint32_t count,
+                              evodevo::Rng& rng) const override {
     const evodevo::Genome sizes(context.layout.first_size());
     const Distribution now = distribution_in(context);
     std::vector<evodevo::Child> children(count);
@@ -38,19 +36,16 @@ class CrossEntropy final : public evodevo::Selection {
     return children;
   }
 
-  evodevo::Survival survive(const evodevo::SelectionContext& context, std::uint32_t population,
-                            evodevo::Rng&) const override {
+  evodevo::Survival survivors(const evodevo::SelectionContext& context, std::uint32_t population,
+                              evodevo::Rng&) const override {
     const auto order = best_first(context.rows);
     Distribution now = distribution_in(context);
     evodevo::Survival survival;
     for (const std::uint32_t row : order)
       if (context.rows[row].ok()) survival.notes.push_back({row, 0, distance(*context.rows[row].genome, now.mean)});
     move(now, elite_of(context.rows, order));
-    survival.rows.assign(order.begin(), order.begin() + std::min<std::size_t>(order.size(), population));
-    evodevo::MemoryWriter writer;
-    writer.write(now.mean);
-    writer.write(now.deviation);
-    survival.memory = writer.bytes();
+    survival.rows = evodevo::first_rows(order, population);
+    survival.memory = evodevo::SelectionMemory{.lists = {{"mean", now.mean}, {"deviation", now.deviation}}};
     return survival;
   }
 
@@ -72,11 +67,7 @@ class CrossEntropy final : public evodevo::Selection {
       }
       return now;
     }
-    evodevo::MemoryReader reader(context.memory);
-    now.mean = reader.read_list<double>();
-    now.deviation = reader.read_list<double>();
-    reader.finish();
-    return now;
+    return {context.memory.list("mean"), context.memory.list("deviation")};
   }
 
   /// Returns the genomes of the best newborns.

@@ -21,13 +21,14 @@ class Limbs final : public evodevo::Encoding {
 
   evodevo::Layout layout(const evodevo::EncodingContext& context) const override {
     const evodevo::GeneSpec length{0.25F, 1}, turn{-pi, pi}, tilt{-pi / 2, pi / 2};
-    const evodevo::GeneSpec material{.choices = static_cast<std::uint32_t>(context.materials.size())};
+    const evodevo::GeneSpec any_material{.choices = static_cast<std::uint32_t>(context.materials.size())};
     evodevo::Layout layout;
     layout.add_type({.name = "branch",
-                     .genes = {length, turn, tilt, material, {.refers_to = 0}},
+                     .genes = {length, turn, tilt, any_material, {.refers_to = 0}},
                      .least = 4,
                      .most = static_cast<std::uint32_t>(most_),
                      .gene_names = {"length", "turn", "tilt", "material", "parent"}});
+    layout.types[0].name_options(material, context.material_names);
     for (std::int64_t i = 0; i < branches_; ++i) layout.add_block_of(0);
     return layout;
   }

@@ -4,12 +4,12 @@
 #include <limits>
 
 #include "evodevo/helpers/rows.hpp"
-#include "evodevo/helpers/selection/memory.hpp"
 #include "evodevo/plugin.hpp"
 
 namespace {
 
 using evodevo::Candidate;
+using evodevo::SelectionContext;
 
 /// The individuals whose descriptors differ most from those of their nearest neighbour survive. In every generation,
 /// the archive gets the descriptors of the most novel of those who do not.
@@ -22,16 +22,16 @@ class Novelty final : public evodevo::Selection {
 
   evodevo::Traits traits() const override { return {.is_elitist = false, .least_descriptors = 1}; }
   std::vector<evodevo::NoteTitle> notes() const override { return {{"novelty"}}; }
+  std::vector<std::string> memory() const override { return {"archive"}; }
 
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> parents(std::span<const Candidate> rows, std::uint32_t count,
-                                                               evodevo::Rng& rng) const override {
-    return draw_pairs(rows, count, rng, evodevo::draw_any);
+  std::vector<evodevo::Couple> parents(const SelectionContext& context, std::uint32_t count,
+                                       evodevo::Rng& rng) const override {
+    return draw_pairs(context.rows, count, rng, evodevo::draw_any);
   }
 
-  evodevo::Survival survive(const evodevo::SelectionContext& context, std::uint32_t population,
-                            evodevo::Rng&) const override {
+  evodevo::Survival survivors(const SelectionContext& context, std::uint32_t population, evodevo::Rng&) const override {
     std::vector<double> archive;  // the descriptors of all who are in it
-    if (!context.memory.empty()) archive = evodevo::MemoryReader(context.memory).read_list<double>();
+    if (!context.memory.empty()) archive = context.memory.list("archive");
     auto order = best_first(context.rows);
     evodevo::Survival survival;
     std::vector<double> novelty(order.size(), -1);  // failed rows come last
@@ -47,17 +47,14 @@ class Novelty final : public evodevo::Selection {
     for (std::size_t i = survivors; i < order.size(); ++i)
       if (const Candidate& one = context.rows[order[i]]; one.ok() && left-- > 0)
         archive.insert(archive.end(), one.descriptors.begin(), one.descriptors.end());
-    evodevo::MemoryWriter writer;
-    writer.write(archive);
-    survival.memory = writer.bytes();
+    survival.memory = evodevo::SelectionMemory{.lists = {{"archive", archive}}};
     return survival;
   }
 
  private:
   /// Returns the distance of a row to its nearest neighbour in the table and in the archive. Each descriptor counts
   /// relative to its range.
-  static double novelty_of(std::uint32_t row, const evodevo::SelectionContext& context,
-                           const std::vector<double>& archive) {
+  static double novelty_of(std::uint32_t row, const SelectionContext& context, const std::vector<double>& archive) {
     const auto own = context.rows[row].descriptors;
     double least = std::numeric_limits<double>::max();
     const auto compare = [&](std::span<const double> other) {

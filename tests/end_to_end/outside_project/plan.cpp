@@ -35,8 +35,7 @@ class Plan final : public evodevo::Devo {
     std::stable_sort(order.begin(), order.end(),
                      [&](std::uint32_t i, std::uint32_t j) { return context.stress[i] < context.stress[j]; });
     order.resize(std::min<std::size_t>(order.size(), numbers_[line]));
-    for (const std::uint32_t spring : order) edits.causes.removed_springs.push_back(context.stress[spring]);
-    edits.removed_springs = std::move(order);
+    for (const std::uint32_t spring : order) edits.remove_spring(spring, {.cause = context.stress[spring]});
   }
 
  private:

@@ -45,7 +45,7 @@ def amounts(life):
     return collections.Counter(
         ("mass " if "mass" in edit else "spring ") + edit["event"]
         for edit in in_cycle(life)
-        if edit["event"] != "growth"
+        if edit["event"] != "scaled"
     )
 
 

@@ -21,7 +21,7 @@ bool has_muscle(const Body& body) {
 }  // namespace
 
 std::optional<Body> robot_of(const Experiment& experiment, const Genome& genome) {
-  BuiltBody built = build_body(decoded(experiment, genome));
+  BuiltBody built = build_body(experiment, decoded(experiment, genome));
   if (!built.failure.empty()) return std::nullopt;
   if (const auto& payload = experiment.payload) add_payload(built.body, payload->share, payload->top);
   const State birth = state_at_birth(built.body, experiment.scene);

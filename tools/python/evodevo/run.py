@@ -15,7 +15,7 @@ from .body import Body
 from .errors import ArchiveError
 from .program import json_of, output_of
 
-FORMAT = 16  # of the archive
+FORMAT = 17  # of the archive
 
 
 def _gene_name(names, count, gene):
@@ -174,23 +174,26 @@ class Run:
     def genes(self, individual):
         """Returns a row for each gene of an individual, in the order of `genome`: section (the operator that owns it),
         block (counted from 0 in its section), type (of the block), gene (its name, as `evodevo genes` gives it),
-        value, low, high (bounds of a real gene)."""
+        value, low, high (bounds of a real gene), option (the name of the option that a choice gene chooses; empty if
+        it has none)."""
         values = self.genome(individual)
         types = self.query("SELECT type, section, owner, block_types.name FROM block_types "
                            "JOIN sections USING (section)")
         types = types.set_index("type")
         kinds = dict(tuple(self.query("SELECT * FROM gene_types ORDER BY type, position").groupby("type")))
+        options = self.query("SELECT * FROM gene_options").set_index(["type", "position", "option"])["name"].to_dict()
         rows, first, blocks_in = [], 0, {}
         for kind, count in self._blocks(individual):
             section, owner, name = types.loc[kind]
             block = blocks_in[section] = blocks_in.get(section, -1) + 1
             genes = kinds[kind]
             for i in range(count):
-                gene = genes.iloc[min(i, len(genes) - 1)]  # the last describes all further ones
+                position = min(i, len(genes) - 1)  # the last describes all further ones
+                gene = genes.iloc[position]
                 rows.append((owner, block, name, _gene_name(genes["name"], count, i), values[first + i], gene["low"],
-                             gene["high"]))
+                             gene["high"], options.get((kind, position, float(values[first + i])), "")))
             first += count
-        return pd.DataFrame(rows, columns=["section", "block", "type", "gene", "value", "low", "high"])
+        return pd.DataFrame(rows, columns=["section", "block", "type", "gene", "value", "low", "high", "option"])
 
     def _blocks(self, individual):
         """Returns the type and the number of genes of each block of a genome."""

@@ -3,14 +3,32 @@
 
 #include <array>
 #include <cmath>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace evodevo {
 
-/// The functions that a neuron may have. The value of each is of the order of 1 if its argument is.
-inline constexpr std::array<double (*)(double), 5> activations = {
-    [](double x) { return x; },           [](double x) { return std::tanh(x); },
-    [](double x) { return std::sin(x); }, [](double x) { return std::exp(-x * x); },
-    [](double x) { return std::abs(x); },
+/// A function that a neuron may have.
+struct Activation {
+  std::string_view name;
+  double (*value)(double);
 };
+
+/// The functions that a neuron may have. The value of each is of the order of 1 if its argument is.
+inline constexpr std::array<Activation, 5> activations = {{
+    {"linear", [](double x) { return x; }},
+    {"tanh", [](double x) { return std::tanh(x); }},
+    {"sine", [](double x) { return std::sin(x); }},
+    {"gaussian", [](double x) { return std::exp(-x * x); }},
+    {"absolute", [](double x) { return std::abs(x); }},
+}};
+
+/// Returns the names of `activations`, for the genes that choose among them.
+inline std::vector<std::string> activation_names() {
+  std::vector<std::string> names;
+  for (const Activation& activation : activations) names.emplace_back(activation.name);
+  return names;
+}
 
 }  // namespace evodevo

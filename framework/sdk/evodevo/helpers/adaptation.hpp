@@ -13,13 +13,14 @@ inline double within_bounds(double before, double after, double low, double high
   return after < before ? std::max(after, std::min(before, low)) : std::min(after, std::max(before, high));
 }
 
-/// Returns the change that gives a spring a new stiffness, N/m, or nothing if it has this stiffness. Its material
-/// stays, so that bodies do not get a material for every spring.
-inline std::optional<ChangedSpring> with_stiffness(const Body& body, std::uint32_t index, double stiffness) {
+/// Returns the change that gives a spring a new stiffness, N/m, for a cause, or nothing if it has this stiffness. Its
+/// material stays, so that bodies do not get a material for every spring.
+inline std::optional<ChangedSpring> with_stiffness(const Body& body, std::uint32_t index, double stiffness,
+                                                   double cause = no_cause) {
   const Spring& spring = body.springs[index];
   const double factor = stiffness / body.materials[spring.material].stiffness;
   if (factor == spring.stiffness_factor || stiffness == body.stiffness(spring)) return std::nullopt;
-  return ChangedSpring{.spring = index, .stiffness_factor = factor};
+  return ChangedSpring{.spring = index, .stiffness_factor = factor, .cause = cause};
 }
 
 /// Multiplies a property of the most stressed springs by a factor, within bounds. Springs without the property are
@@ -27,7 +28,7 @@ inline std::optional<ChangedSpring> with_stiffness(const Body& body, std::uint32
 class Adaptation : public Devo {
  public:
   RecordRequest observes() const final { return measure_.request(); }
-  Measure measure(Causes::List) const final { return measure_.measure(); }
+  Measure measure(EditKind) const final { return measure_.measure(); }
 
   void develop(const DevoContext& context, Edits& edits, Rng& rng) const final {
     const std::vector<double> stress_of = measure_.of(context);
@@ -42,10 +43,10 @@ class Adaptation : public Devo {
     for (const std::uint32_t i : most_stressed(stress, static_cast<std::size_t>(springs_), chance)) {
       const double before = value(context.body, springs[i]),
                    after = within_bounds(before, factor_ * before, low_, high_);
-      const std::optional<ChangedSpring> change = changed(context.body, springs[i], after);
+      std::optional<ChangedSpring> change = changed(context.body, springs[i], after);
       if (after == before || !change) continue;
-      edits.changed_springs.push_back(*change);
-      edits.causes.changed_springs.push_back(stress[i]);
+      change->cause = stress[i];
+      edits.change_spring(springs[i], *change);
     }
   }
 

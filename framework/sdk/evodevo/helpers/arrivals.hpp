@@ -63,7 +63,7 @@ class Arrivals {
       found.position = drawn ? position_on_spring(drawn->spring, *place) : position_in_bounds(*place);
       if (!is_free(found.position)) continue;
       places_.push_back(found);
-      if (drawn) causes_.push_back(stress_[drawn->spring]);
+      if (drawn) places_.back().cause = stress_[drawn->spring];
       return true;
     }
     return false;
@@ -77,11 +77,10 @@ class Arrivals {
     if (models.empty()) return false;
     for (const Place& place : places_) {
       const std::uint32_t model = chance_.one_of(models, {"model", place.key});
-      edits.new_masses.push_back({place.position, context_.mass, context_.body.masses[model].material});
-      if (chance_.inherited()) edits.new_masses.back().identity = mixed(context_.draws.origin(), place.key);
-      join(partners, place.key, edits);
+      NewMass mass{.material = context_.body.masses[model].material, .cause = place.cause};
+      if (chance_.inherited()) mass.identity = mixed(context_.draws.origin(), place.key);
+      join(edits.add_mass(place.position, mass), place, mass.material, partners, edits);
     }
-    edits.causes.new_masses = causes_;
     return true;
   }
 
@@ -93,6 +92,7 @@ class Arrivals {
   struct Place {
     Vec3 position;
     std::uint64_t key;
+    double cause = no_cause;  ///< stress of the spring
   };
 
   Vec3 position_in_bounds(Rng& rng) const {
@@ -120,23 +120,26 @@ class Arrivals {
     return true;
   }
 
-  /// Adds springs from the newest mass, whose place has this key, to several of `partners`; changes the order of
-  /// `partners`.
-  void join(std::vector<std::uint32_t>& partners, std::uint64_t key, Edits& edits) {
+  /// Adds springs from a new mass to several of `partners`; changes the order of `partners`.
+  void join(std::uint32_t newest, const Place& place, std::int32_t own, std::vector<std::uint32_t>& partners,
+            Edits& edits) {
     const Body& body = context_.body;
-    const auto newest = static_cast<std::uint32_t>(body.masses.size() + edits.new_masses.size() - 1);
-    const std::int32_t own = edits.new_masses.back().material;
     const auto count = static_cast<std::uint32_t>(partners.size());
     const bool random = rule_.join == "random", inherited = chance_.inherited();
     if (!random)
-      sort_nearest_first(partners, static_cast<std::size_t>(rule_.springs), edits.new_masses.back().position, context_);
+      sort_nearest_first(partners, static_cast<std::size_t>(rule_.springs), place.position, context_);
     else if (inherited)
-      sort_by_number(partners, {"partner", key});
+      sort_by_number(partners, {"partner", place.key});
     for (std::uint32_t i = 0; i < std::min<std::int64_t>(count, rule_.springs); ++i) {
       if (random && !inherited) std::swap(partners[i], partners[i + chance_.rng().below(count - i)]);
-      const auto mixed = material_between(body, own, body.masses[partners[i]].material);
-      edits.new_springs.push_back(mixed ? NewSpring{partners[i], newest, *mixed, {}}
-                                        : like_a_random_spring(partners[i], newest, key));
+      if (const auto mixed = material_between(body, own, body.masses[partners[i]].material)) {
+        edits.join(partners[i], newest, *mixed);
+      } else {
+        const std::uint32_t model = random_spring(partners[i], place.key);
+        const Spring& spring = body.springs[model];
+        edits.join(partners[i], newest, body.materials[spring.material],
+                   {.stiffness_factor = spring.stiffness_factor, .like = model});
+      }
     }
   }
 
@@ -149,18 +152,11 @@ class Arrivals {
     std::ranges::transform(order, masses.begin(), [](const auto& item) { return item.second; });
   }
 
-  /// Returns a new spring with the stiffness, amplitude, frequency and phase of a random one, now and later.
-  NewSpring like_a_random_spring(std::uint32_t a, std::uint32_t b, std::uint64_t key) {
-    const auto& springs = context_.body.springs;
-    std::uint32_t index = 0;
-    if (chance_.inherited()) {
-      if (!ring_) ring_ = chance_.ring_of_springs();
-      index = ring_->at(context_.draw(a, {"like", key}));
-    } else {
-      index = chance_.rng().below(static_cast<std::uint32_t>(springs.size()));
-    }
-    const Spring& model = springs[index];
-    return {a, b, context_.body.materials[model.material], {}, model.stiffness_factor, model.phase_growth};
+  /// Returns a random spring, after which a new spring between a mass and the one at the place of a key is made.
+  std::uint32_t random_spring(std::uint32_t mass, std::uint64_t key) {
+    if (!chance_.inherited()) return chance_.rng().below(static_cast<std::uint32_t>(context_.body.springs.size()));
+    if (!ring_) ring_ = chance_.ring_of_springs();
+    return ring_->at(context_.draw(mass, {"like", key}));
   }
 
   bool is_of_air(std::uint32_t mass) const {
@@ -185,7 +181,6 @@ class Arrivals {
   std::optional<Ring> ring_;  ///< of the springs, once one is drawn
   std::vector<bool> stays_;
   std::vector<Place> places_;
-  std::vector<double> causes_;  ///< for each place, the stress of the spring that it is on; empty if `stress_` is
 };
 
 }  // namespace evodevo

@@ -18,6 +18,13 @@ inline std::string why_no_body(const EncodingContext& context, const std::vector
   return solid ? "" : "all materials to choose from are air";
 }
 
+/// Returns the names of the chosen materials, for the genes that choose among them.
+inline std::vector<std::string> names_of(const EncodingContext& context, const std::vector<std::int32_t>& chosen) {
+  std::vector<std::string> names;
+  for (const std::int32_t i : chosen) names.push_back(context.material_names[i]);
+  return names;
+}
+
 /// Returns the mean of the materials of two masses (paper, section IV-D2), or nothing if one of them has no material.
 inline std::optional<Material> material_between(const Body& body, std::int32_t first, std::int32_t second) {
   if (first == no_material || second == no_material) return std::nullopt;

@@ -51,14 +51,32 @@ class NetworkEncoding : public Encoding {
       blueprint.body.masses.push_back({{position(output[0]), position(output[1]), position(output[2])},
                                        context.mass,
                                        chosen[static_cast<size_t>(material)]});
-      if (size_range_ > 0) blueprint.sizes.push_back({size(output[3 + materials]), size(output[4 + materials])});
+      if (size_range_ == 0) continue;
+      const double birth = size(output[3 + materials]), end = size(output[4 + materials]);
+      if (!std::isfinite(birth) || !std::isfinite(end)) return {{}, 0, "the size of a mass is not finite"};
+      blueprint.mass_memory[size_at_birth].push_back(birth);
+      blueprint.mass_memory[size_at_end].push_back(end);
     }
     for (const auto& point : ball_.colwise()) blueprint.origins.push_back({point[0], point[1], point[2]});
     if (pairing_ == "before-mapping") blueprint.paired_at = blueprint.origins;
     return blueprint;
   }
 
-  bool sets_growth() const final { return size_range_ > 0; }
+  std::vector<std::string> spring_memory() const final {
+    return size_range_ > 0 ? std::vector<std::string>{"growth"} : std::vector<std::string>();
+  }
+
+  /// The rest length of a spring is the distance of its masses times the mean of their sizes.
+  void joined(Blueprint& blueprint) const final {
+    if (size_range_ == 0) return;
+    const std::vector<double>&births = blueprint.mass_memory[size_at_birth], &ends = blueprint.mass_memory[size_at_end];
+    std::vector<double>& growth = blueprint.spring_memory["growth"];
+    for (Spring& spring : blueprint.body.springs) {
+      const double birth = (births[spring.a] + births[spring.b]) / 2, end = (ends[spring.a] + ends[spring.b]) / 2;
+      spring.rest_length *= birth;
+      growth.push_back(double{static_cast<float>(end / birth)} - 1);
+    }
+  }
 
  protected:
   using Matrix = Eigen::MatrixXd;
@@ -70,6 +88,9 @@ class NetworkEncoding : public Encoding {
   }
 
  private:
+  /// What masses remember at birth: their sizes.
+  static constexpr const char *size_at_birth = "size at birth", *size_at_end = "size at the end";
+
   /// Returns the network's outputs, one column for each point.
   virtual Matrix map(const Genome& genome, const Layout& layout, const Matrix& points,
                      const EncodingContext& context) const = 0;

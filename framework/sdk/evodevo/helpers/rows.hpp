@@ -1,5 +1,5 @@
-// For selection operators: an order of the rows that does not depend on the order of birth, competition between parents
-// and children, and the choice of parents.
+// For selection operators: an order of the individuals that does not depend on that of the rows, competition between
+// parents and children, and the choice of parents.
 #pragma once
 
 #include <algorithm>
@@ -22,16 +22,16 @@ inline bool is_better(const Candidate& one, const Candidate& other, std::size_t 
 }
 
 /// Returns the rows from best to worst: by the first score, ties by the other scores in their order, then by youth,
-/// then by the order of birth. Failed rows come last, and among them those first that violate the constraints least
-/// (Deb 2000). An operator that works in this order gives a result that depends on the order of birth only for exact
-/// ties.
+/// then by id. Failed rows come last, and among them those first that violate the constraints least (Deb 2000). An
+/// operator that works in this order gives a result that does not depend on the order of the rows.
 inline std::vector<std::uint32_t> best_first(std::span<const Candidate> rows) {
   std::vector<std::uint32_t> order(rows.size());
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
     const std::size_t objectives = rows[i].scores.size();
     if (is_better(rows[i], rows[j], objectives)) return true;
-    return !is_better(rows[j], rows[i], objectives) && rows[i].age < rows[j].age;
+    if (is_better(rows[j], rows[i], objectives)) return false;
+    return std::pair(rows[i].age, rows[i].id) < std::pair(rows[j].age, rows[j].id);
   });
   return order;
 }
@@ -69,23 +69,22 @@ inline std::vector<std::uint32_t> breeding_rows(std::span<const Candidate> rows)
 /// Returns `count` pairs of a parent and a mate, both from `pool`. `draw(n, rng)` returns a position from 0 to n-1. The
 /// mate differs from the parent if the pool has more than one row.
 template <class Draw>
-std::vector<std::pair<std::uint32_t, std::uint32_t>> draw_pairs(const std::vector<std::uint32_t>& pool,
-                                                                std::uint32_t count, Rng& rng, const Draw& draw) {
+std::vector<Couple> draw_pairs(const std::vector<std::uint32_t>& pool, std::uint32_t count, Rng& rng,
+                               const Draw& draw) {
   if (pool.empty()) return {};
   const auto size = static_cast<std::uint32_t>(pool.size());
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  std::vector<Couple> pairs;
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t parent = draw(size, rng);
     std::uint32_t mate = size > 1 ? draw(size - 1, rng) : parent;
     if (size > 1 && mate >= parent) ++mate;  // so that the mate is any row except the parent
-    pairs.emplace_back(pool[parent], pool[mate]);
+    pairs.push_back({pool[parent], pool[mate]});
   }
   return pairs;
 }
 /// The same for breeding_rows(): position 0 is the best row.
 template <class Draw>
-std::vector<std::pair<std::uint32_t, std::uint32_t>> draw_pairs(std::span<const Candidate> rows, std::uint32_t count,
-                                                                Rng& rng, const Draw& draw) {
+std::vector<Couple> draw_pairs(std::span<const Candidate> rows, std::uint32_t count, Rng& rng, const Draw& draw) {
   return draw_pairs(breeding_rows(rows), count, rng, draw);
 }
 

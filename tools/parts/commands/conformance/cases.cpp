@@ -243,7 +243,12 @@ std::string transcript(const Archive& archive) {
     for (const ArchivedNote& note : archive.notes(id)) text += note.name + " " + to_text(note.value) + " ";
     text += individual->died ? std::to_string(*individual->died) + "\n" : "lives\n";
   }
-  for (const std::byte byte : archive.memory()) text += std::to_string(std::to_integer<int>(byte)) + " ";
+  const Memories memories = archive.memory();
+  for (const SelectionMemory* memory : {&memories.survivors, &memories.parents})
+    for (const auto& [name, numbers] : memory->lists) {
+      text += "\n" + name + " ";
+      for (const double number : numbers) text += to_text(number) + " ";
+    }
   return text;
 }
 

@@ -19,17 +19,11 @@ std::string numbered(const char* what, std::uint32_t input) { return std::string
 
 /// Throws unless the blueprint is correct and all of its positions are finite. A run is more tolerant: it treats a body
 /// whose positions are not finite as invalid.
-void require_sound(const Blueprint& blueprint, const EncodingContext& context) {
-  check_blueprint(blueprint, context);
+void require_sound(const Encoding& op, const Blueprint& blueprint, const EncodingContext& context) {
+  check_blueprint(blueprint, context, op.spring_memory());
   for (const Mass& mass : blueprint.body.masses)
     if (!std::isfinite(norm(mass.rest))) throw Violation("the position of a mass is not finite");
-}
-
-bool springs_grow(const Blueprint& blueprint) {
-  const std::vector<Spring>& springs = blueprint.body.springs;
-  return !blueprint.sizes.empty() || std::any_of(springs.begin(), springs.end(), [](const Spring& spring) {
-    return spring.growth != 1 || spring.phase_growth != 0;
-  });
+  build_body(blueprint, [&](std::size_t, Blueprint& joined) { complete(op, context, joined); });
 }
 
 /// Checks that every genome gives a sound body or a reason why there is none, and that not all fail.
@@ -53,9 +47,7 @@ void decodes(const Subject& subject, std::uint64_t seed) {
     reason = blueprint.failure;
     if (!reason.empty()) continue;
     if (blueprint.body.masses.empty()) throw Violation("a blueprint has neither masses nor a failure that says why");
-    require_sound(blueprint, context);
-    if (springs_grow(blueprint) && !op->sets_growth())
-      throw Violation("it lets springs grow, but sets_growth() returns false");
+    require_sound(*op, blueprint, context);
     ++bodies;
   }
   if (bodies == 0) throw Violation("none of the genomes that were tried gives a body: " + reason);
@@ -75,7 +67,7 @@ void nothing_stays_nothing(const Subject& subject, std::uint64_t seed) {
   Rng rng = stream(seed, 0);
   auto [layout, genome] = sample_genes(*op, {{}, [](Rng&) { return Genome(); }}, rng);
   const std::size_t own = genome.size();
-  op->mutate(genome, layout, rng);
+  op->mutate(genome, {layout, 1}, rng);
   if (genome.size() != own) throw Violation("it adds genes to a genome that has no genes");
 }
 
@@ -87,7 +79,7 @@ void mutates(const Subject& subject, std::uint64_t seed) {
     Rng rng = stream(seed, input);
     const auto [layout, genome] = sample_genes(*op, sample_genomes(subject, *op, input), rng);
     Genome mutant = genome;
-    op->mutate(mutant, layout, rng);
+    op->mutate(mutant, {layout, generation_of(input)}, rng);
     if (mutant != genome) return;
   }
   throw Violation("it changes none of " + std::to_string(tries_to_change) + " genomes, so its children are clones");
@@ -98,8 +90,8 @@ void mutants_fit(const Subject& subject, std::uint64_t seed) {
   for (const std::uint32_t input : {0, 1}) {
     Rng rng = stream(seed, input);
     auto [layout, genome] = sample_genes(*op, sample_genomes(subject, *op, input), rng);
-    for (int i = 0; i < 200; ++i) {
-      op->mutate(genome, layout, rng);
+    for (std::uint32_t i = 0; i < 200; ++i) {
+      op->mutate(genome, {layout, generation_of(i)}, rng);
       require_within(genome, layout);
     }
   }
@@ -111,7 +103,7 @@ void twins_stay_twins(const Subject& subject, std::uint64_t seed) {
     const auto [layout, draw] = sample_genomes(subject, *op, input);
     Rng rng = stream(seed, input);
     const Genome genome = draw(rng), twin = genome;
-    if (op->cross({genome, twin}, layout, rng) != genome)
+    if (op->cross({genome, twin}, {layout, generation_of(input)}, rng) != genome)
       throw Violation("the child of two equal genomes differs from them");
   }
 }
@@ -123,7 +115,7 @@ void crosses(const Subject& subject, std::uint64_t seed) {
     const auto [layout, draw] = sample_genomes(subject, *op, input);
     Rng rng = stream(seed, input);
     const Genome first = draw(rng), second = draw(rng);
-    if (op->cross({first, second}, layout, rng) != first) return;
+    if (op->cross({first, second}, {layout, generation_of(input)}, rng) != first) return;
   }
   throw Violation("for all of " + std::to_string(tries_to_change) +
                   " pairs of genomes it returns the first genome, so its children are clones");
@@ -135,15 +127,15 @@ void children_fit(const Subject& subject, std::uint64_t seed) {
   for (std::uint32_t input = 0; input < 200; ++input) {
     const auto [layout, draw] = sample_genomes(subject, *op, input);
     const Genome first = draw(rng), second = draw(rng);
-    require_within(op->cross({first, second, input % 4 < 2}, layout, rng), layout);
+    require_within(op->cross({first, second, input % 4 < 2}, {layout, generation_of(input)}, rng), layout);
   }
 }
 
 // ---- development ----
 
 void require_measures(const Devo& op) {
-  for (const Causes::List list : Causes::lists)
-    if (const Measure measure = op.measure(list); measure.name.empty() || measure.unit.empty())
+  for (const EditKind edit : edit_kinds)
+    if (const Measure measure = op.measure(edit); measure.name.empty() || measure.unit.empty())
       throw Violation("measure() returns no name or no unit; the unit of a pure number is \"1\"");
 }
 
@@ -156,20 +148,22 @@ void bodies_stay_sound(const Subject& subject, std::uint64_t seed) {
   for (std::uint32_t input = 0; input < 24; ++input) {
     SampleLife life = sample_life(subject, *op, seed, input);
     for (life.cycle = 1; life.cycle <= 10; ++life.cycle) {
-      Edits edits;
       Rng rng = stream(seed, input, static_cast<std::uint32_t>(life.cycle));
       const DevoContext context = life.context(op->observes());
+      Edits edits(context.body);
       op->develop(context, edits, rng);
+      if (edits.failure) break;
       edited = edited || !edits.empty();
-      if (edits.growth && !op->uses_growth()) throw Violation("it lets springs grow, but uses_growth() returns false");
       for (const NewMass& mass : edits.new_masses) {
         // written so that NaN fails
         if (!std::isfinite(norm(mass.position)) || !(mass.position.z >= context.bounds.low.z))
           throw Violation(numbered("body", input) + ": a new mass lies below the bounds of the context");
       }
       try {
-        remember(edits, memory_names(*op), life.living.body, life.living.memory.front());
-        apply(resolved(edits, context), life.living);
+        OperatorMemory& memory = life.living.memory.front();
+        remember(edits, memory_names(*op), life.living.body, memory);
+        if (memory.springs_changed) write_out_scaling(edits, life.living.body, memory.springs);
+        apply(resolved(edits, context), life.living, 0);
       } catch (const std::invalid_argument& error) {
         throw Violation(numbered("body", input) + ", " + numbered("cycle", std::uint32_t(life.cycle)) + ": it " +
                         error.what());
@@ -203,8 +197,8 @@ std::multiset<Numbers> by_identity(const Edits& edits, const DevoContext& contex
     list(what, {context.body.springs.at(s).a, context.body.springs.at(s).b}, how);
   };
   const auto of = [](const Material& m) { return Numbers{m.stiffness, m.amplitude, m.frequency, m.phase, m.damping}; };
-  for (const std::uint32_t s : edits.removed_springs) spring(0, s, {});
-  for (const std::uint32_t mass : edits.removed_masses) list(1, {mass}, {});
+  for (const Removal& removal : edits.removed_springs) spring(0, removal.index, {});
+  for (const Removal& removal : edits.removed_masses) list(1, {removal.index}, {});
   for (const ChangedSpring& s : edits.changed_springs) {
     Numbers how{s.rest_length.value_or(-1), s.stiffness_factor.value_or(-1)};
     append(how, of(s.material.value_or(Material{})));
@@ -213,10 +207,10 @@ std::multiset<Numbers> by_identity(const Edits& edits, const DevoContext& contex
   for (std::uint32_t i = 0; i < edits.new_masses.size(); ++i) {
     const NewMass& mass = edits.new_masses[i];
     list(3, {static_cast<std::uint32_t>(masses) + i},
-         {mass.position.x, mass.position.y, mass.position.z, mass.mass, double(mass.material)});
+         {mass.position.x, mass.position.y, mass.position.z, mass.mass.value(), double(mass.material)});
   }
   for (const NewSpring& s : edits.new_springs) {
-    Numbers how{s.rest_length.value_or(-1), s.stiffness_factor, s.phase_growth};
+    Numbers how{s.rest_length.value_or(-1), s.stiffness_factor, s.like ? 1.0 : 0.0};
     append(how, of(s.material));
     list(4, {s.a, s.b}, how);
   }
@@ -239,7 +233,7 @@ void changes_stay_local(const Subject& subject, std::uint64_t seed) {
       const std::uint64_t whose = whole.living.numbers.identities()[mass];
       const auto edits_of = [&](const SampleLife& life) {
         const DevoContext context = life.context(op->observes());
-        Edits edits;
+        Edits edits(context.body);
         Rng rng = context.draws.stream("stream");
         op->develop(context, edits, rng);
         return by_identity(resolved(edits, context), context, whose);

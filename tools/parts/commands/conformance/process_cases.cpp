@@ -97,12 +97,12 @@ void plain_names(const Subject& subject, std::uint64_t) {
     }
   }
   if (const auto* devo = dynamic_cast<const Devo*>(op.get())) {
-    for (const Causes::List list : Causes::lists) {
-      require_plain("the name of a measure", devo->measure(list).name);
-      require_plain("the unit of a measure", devo->measure(list).unit);
+    for (const EditKind edit : edit_kinds) {
+      require_plain("the name of a measure", devo->measure(edit).name);
+      require_plain("the unit of a measure", devo->measure(edit).unit);
     }
     const MemoryNames names = memory_names(*devo);
-    for (const auto& list : {names.masses, names.springs})
+    for (const auto& list : {names.masses, names.springs, names.body})
       for (const std::string& name : list) require_plain("the name of a number that it remembers", name);
   }
 }

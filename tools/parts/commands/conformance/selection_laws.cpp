@@ -9,70 +9,56 @@
 namespace evodevo::conformance {
 namespace {
 
-std::vector<std::uint32_t> first_to_last(std::uint32_t count) {
-  std::vector<std::uint32_t> rows(count);
-  std::iota(rows.begin(), rows.end(), 0u);
-  return rows;
-}
-
-/// Returns what the operator makes or chooses for 20 children: rows of parents as rows of the first table, and genes.
-Numbers bred(const Selection& op, const SelectionContext& context, const std::vector<std::uint32_t>& order, Rng& rng) {
-  const Traits traits = op.traits();
+/// Returns what the operator makes or chooses for 20 children: ids of parents, genes, notes and memory.
+Numbers bred(const Selection& op, const SelectionContext& context, Rng& rng) {
   Numbers numbers;
-  if (traits.makes_children) {
-    for (const Child& child : sound_children(op, context, 20, rng)) {
-      const Numbers genes = numbers_of(child.genome);
-      numbers.insert(numbers.end(), genes.begin(), genes.end());
-      for (const std::uint32_t row : child.parents) numbers.push_back(order.at(row));
-    }
-  } else if (traits.chooses_parents) {
-    for (const auto& [parent, mate] : op.couples(context, 20, rng))
-      for (const std::uint32_t row : {parent, mate}) numbers.push_back(order.at(row));
-  }
+  if (op.overrides.parents)
+    for (const auto& [parent, mate] : sound_couples(op, context, 20, rng))
+      append(numbers, {double(context.rows[parent].id), double(context.rows[mate].id)});
+  if (!op.overrides.children) return numbers;
+  Offspring offspring = sound_offspring(op, context, 20, rng);
+  for (Child& child : offspring.children)
+    for (std::uint32_t& parent : child.parents) parent = context.rows[parent].id;
+  append(numbers, numbers_of(offspring));
   return numbers;
 }
 
-/// Returns the survivors and the notes, as rows of the first table, in ascending order, and sets the memory.
-Numbers survived(const Selection& op, const SelectionContext& context, const std::vector<std::uint32_t>& order,
-                 Rng& rng, std::vector<std::byte>& memory) {
-  if (!op.traits().chooses_survivors) return {};
+/// Returns the survivors and the notes, with ids in place of rows, in their order.
+Survival survived(const Selection& op, const SelectionContext& context, Rng& rng) {
+  if (!op.overrides.survivors) return {};
   Survival survival = sound_survival(op, context, 10, rng);
-  memory = survival.memory;
-  for (std::uint32_t& row : survival.rows) row = order.at(row);
-  for (Note& note : survival.notes) note.row = order.at(note.row);
-  std::sort(survival.rows.begin(), survival.rows.end());
-  const auto place = [](const Note& note) { return std::pair(note.row, note.title); };
-  std::sort(survival.notes.begin(), survival.notes.end(), [&](auto& a, auto& b) { return place(a) < place(b); });
-  survival.memory.clear();  // it may list the rows in their order
-  return numbers_of(survival);
+  for (std::uint32_t& row : survival.rows) row = context.rows[row].id;
+  for (Note& note : survival.notes) note.row = context.rows[note.row].id;
+  std::ranges::sort(survival.rows);
+  std::ranges::sort(survival.notes, {}, [](const Note& note) { return std::pair(note.row, note.title); });
+  return survival;
 }
 
+/// Half of the tables have ties.
 void order_does_not_matter(const Subject& subject, std::uint64_t seed) {
   const auto op = create<Selection>(subject);
-  const std::vector<std::uint32_t> straight = first_to_last(24);
+  std::vector<std::uint32_t> order(24);
   for (std::uint32_t input = 0; input < 40; ++input) {
-    // rows that failed may be equally bad; if there is only one, also what is learned must not depend on the order
-    const bool learns = input % 4 < 2;
-    const SampleTable table(subject, *op, seed, input, 24, learns ? 1 : 4);
-    std::vector<std::uint32_t> order = straight;
-    Rng shuffler = stream(seed, input, 2);
-    shuffler.shuffle(order);
+    const SampleTable table(subject, *op, seed, input, order.size(), 4, input % 4 >= 2);
+    std::iota(order.begin(), order.end(), 0u);
+    stream(seed, input, 2).shuffle(order);
     const SampleTable other(table, order);
     Rng rng = stream(seed, input, 1), same_rng = rng;
-    std::vector<std::byte> memory, other_memory;
-    if (survived(*op, table.context(), straight, rng, memory) !=
-        survived(*op, other.context(), order, same_rng, other_memory))
-      throw Violation("the choice of survivors depends on the order of birth");
-    if (!learns) memory.clear(), other_memory.clear();
-    if (bred(*op, table.context(memory), straight, rng) != bred(*op, other.context(other_memory), order, same_rng))
-      throw Violation("the choice of parents, or the children that it makes, depend on the order of birth");
+    const Survival one = survived(*op, table.context(), rng), another = survived(*op, other.context(), same_rng);
+    const SelectionMemory memory = one.memory.value_or(no_memory), other_memory = another.memory.value_or(no_memory);
+    if (memory != other_memory) throw Violation("what it remembers depends on the order of the rows; break ties by id");
+    if (!same(numbers_of(one), numbers_of(another)))
+      throw Violation("the choice of survivors, or its notes, depend on the order of the rows; break ties by id");
+    if (!same(bred(*op, table.context(memory), rng), bred(*op, other.context(other_memory), same_rng)))
+      throw Violation(
+          "the choice of parents, or the children that it makes, depend on the order of the rows; break ties by id");
   }
 }
 
 void keeps_its_elite(const Subject& subject, std::uint64_t seed) {
   const auto op = create<Selection>(subject);
   if (!op->traits().is_elitist) throw Skipped("its traits say that it is not elitist");
-  if (!op->traits().chooses_survivors) throw Skipped("its traits say that it chooses no survivors");
+  if (!op->overrides.survivors) throw Skipped("it overrides no survivors()");
   for (std::uint32_t input = 0; input < 40; ++input) {
     const SampleTable table(subject, *op, seed, input, 24, 4);
     const auto best = best_first(table.rows()).front();
@@ -85,10 +71,9 @@ void keeps_its_elite(const Subject& subject, std::uint64_t seed) {
 
 /// Throws Violation if a row that failed breeds, though there are others.
 void require_sound_parents(const Selection& op, const SampleTable& table, Rng& rng) {
-  const Traits traits = op.traits();
-  if (!traits.chooses_parents || traits.makes_children) return;
-  for (const auto& [parent, mate] : op.couples(table.context(), 20, rng))
-    if (!table.rows().at(parent).ok() || !table.rows().at(mate).ok())
+  if (!op.overrides.parents) return;
+  for (const auto& [parent, mate] : sound_couples(op, table.context(), 20, rng))
+    if (!table.rows()[parent].ok() || !table.rows()[mate].ok())
       throw Violation("a failed row is a parent in place of a sound one");
 }
 
@@ -96,7 +81,7 @@ void require_sound_parents(const Selection& op, const SampleTable& table, Rng& r
 /// failed row is needed. If all rows failed, there must be survivors and parents nevertheless.
 void failed_rows_lose(const Subject& subject, std::uint64_t seed) {
   const auto op = create<Selection>(subject);
-  const bool survivors = op->traits().chooses_survivors;
+  const bool survivors = op->overrides.survivors;
   for (std::uint32_t input = 0; input < 20; ++input) {
     const SampleTable table(subject, *op, seed, input, 20, 8);
     Rng rng = stream(seed, input, 1);
@@ -108,45 +93,40 @@ void failed_rows_lose(const Subject& subject, std::uint64_t seed) {
   const SampleTable hopeless(subject, *op, seed, 0, 20, 20);
   Rng rng = stream(seed, 0, 1);
   if (survivors) sound_survival(*op, hopeless.context(), 10, rng);
-  if (op->traits().makes_children)
-    sound_children(*op, hopeless.context(), 5, rng);
-  else if (op->traits().chooses_parents && op->couples(hopeless.context(), 5, rng).size() != 5)
-    throw Violation("if all rows have failed, it does not choose as many parents as asked for");
+  bred(*op, hopeless.context(), rng);
 }
 
-/// Breeds from a table with a memory. Throws Violation if the result depends on the memory, and the operator does not
-/// claim to need one.
-void breed_with(const std::vector<std::byte>& memory, const Selection& op, const SampleTable& table, Rng& rng) {
-  const auto order = first_to_last(static_cast<std::uint32_t>(table.rows().size()));
-  Rng same_rng = rng;
-  const Numbers numbers = bred(op, table.context(memory), order, rng);
-  if (!op.traits().needs_memory && numbers != bred(op, table.context(), order, same_rng))
-    throw Violation(
-        "the choice of parents, or the children that it makes, depend on the memory; set "
-        "Traits::needs_memory");
+/// Throws Violation unless two results of a function are equal.
+template <class Result>
+void require_same(const char* function, const Result& one, const Result& other) {
+  if (!same(numbers_of(one), numbers_of(other)))
+    throw Violation(std::string("two calls of ") + function +
+                    " with equal arguments give different results; keep nothing between calls");
 }
 
 /// Checks that what an operator remembers depends on the arguments alone, and that it works in generations of any size,
 /// the first one and smaller ones included, with what it remembers from others.
 void fits_generations_of_any_size(const Subject& subject, std::uint64_t seed) {
   const auto op = create<Selection>(subject);
-  const Traits traits = op->traits();
   for (std::uint32_t input = 0; input < 10; ++input) {
-    std::vector<std::byte> memory;
+    SelectionMemory memory;
     for (const std::uint32_t rows : {24, 24, 5, 60}) {
       const SampleTable table(subject, *op, seed + rows, input, rows, rows / 6);
       Rng rng = stream(seed, input, rows);
-      if (traits.makes_children)
-        sound_children(*op, memory.empty() ? table.empty_context() : table.context(memory), rows, rng);
-      if (!traits.chooses_survivors) continue;
+      if (op->overrides.children) {
+        Rng same_rng = rng;
+        const auto context = memory.empty() ? table.empty_context() : table.context(memory);
+        const Offspring offspring = sound_offspring(*op, context, rows, rng);
+        require_same("children()", offspring, op->children(context, rows, same_rng));
+        remember(memory, offspring.memory);
+      }
+      if (!op->overrides.survivors) continue;
       Rng same_rng = rng;
-      const std::uint32_t population = std::max(rows / 2, traits.least_population);
+      const std::uint32_t population = std::max(rows / 2, op->traits().least_population);
       const Survival survival = sound_survival(*op, table.context(memory), population, rng);
-      if (!same(numbers_of(survival), numbers_of(op->survive(table.context(memory), population, same_rng))))
-        throw Violation(
-            "two calls of survive() with equal arguments give different results; keep nothing between calls");
-      memory = survival.memory;
-      breed_with(memory, *op, table, rng);
+      require_same("survivors()", survival, op->survivors(table.context(memory), population, same_rng));
+      remember(memory, survival.memory);
+      bred(*op, table.context(memory), rng);
     }
   }
 }

@@ -81,7 +81,7 @@ Layout sample_layout(std::uint32_t input) {
     layout.add_block(6, {0, 0, 2});
     return layout;
   }
-  const neat::Types types = neat::add_types(layout, 2, 3, 9, 12);
+  const neat::Types types = neat::add_types(layout, 2, {"linear", "sine", "step"}, 9, 12);
   for (int i = 0; i < 4; ++i) layout.add_block_of(types.node);
   for (int i = 0; i < 5; ++i) layout.add_block_of(types.link);
   return layout;
@@ -208,10 +208,10 @@ void add_scores(const Traits& traits, toml::array& fitness) {
 }
 
 /// Returns the table [selection] of a small experiment with a selection operator, whose own table is `own`.
-toml::table selection_with(const toml::table& own, const Traits& traits) {
-  if (traits.chooses_parents && traits.chooses_survivors) return own;
-  return traits.chooses_parents ? toml::table{{"parents", own}, {"survivors", with_name("elitist")}}
-                                : toml::table{{"parents", with_name("elitist")}, {"survivors", own}};
+toml::table selection_with(const toml::table& own, const Overrides& has) {
+  if (!has.survivors) return toml::table{{"parents", own}, {"survivors", with_name("elitist")}};
+  if (!has.parents && !has.children) return toml::table{{"parents", with_name("elitist")}, {"survivors", own}};
+  return own;
 }
 
 std::string small_experiment(const Subject& subject, std::uint64_t seed) {
@@ -219,7 +219,10 @@ std::string small_experiment(const Subject& subject, std::uint64_t seed) {
       "[experiment]\n[scene.gravity]\n[scene.floor]\n[scene.friction]\n"
       "[scene.damping]\n[simulation]\ndevice = \"cpu\"\nthreads = 2\n[development]\ncycles = 2\ncycle_time = 0.05\n",
       "the conformance kit's experiment");
-  const Traits traits = create_operator(subject)->traits();
+  const auto op = create_operator(subject);
+  const Traits traits = op->traits();
+  const bool is_selection = subject.kind() == Selection::kind;
+  const Overrides has = is_selection ? static_cast<const Selection&>(*op).overrides : Overrides();
   const std::int64_t population = std::max({6u, traits.least_population, traits.least_children});
   toml::table& experiment = *root["experiment"].as_table();
   experiment.insert("seed", static_cast<std::int64_t>(seed % (1u << 31)));
@@ -241,7 +244,7 @@ std::string small_experiment(const Subject& subject, std::uint64_t seed) {
   mutation.insert_or_assign(host_key::probability, 0.8);
   crossover.insert_or_assign(host_key::probability, 0.5);
   root.insert("encoding", subject.kind() == Encoding::kind ? own : encoding_for(subject));
-  if (!traits.makes_children) {
+  if (!has.children) {
     root.insert("mutation", toml::array{std::move(mutation)});
     root.insert("crossover", toml::array{std::move(crossover)});
   }
@@ -257,7 +260,7 @@ std::string small_experiment(const Subject& subject, std::uint64_t seed) {
       toml::table{{host_key::name, "distance"}, {host_key::label, "way"}, {"settle", 0.0}, {"window", 0.1}});
   add_scores(traits, fitness);
   root.insert("fitness", std::move(fitness));
-  root.insert("selection", subject.kind() == Selection::kind ? selection_with(own, traits) : with_name("elitist"));
+  root.insert("selection", is_selection ? selection_with(own, has) : with_name("elitist"));
   std::ostringstream text;
   text << root << '\n';
   return text.str();

@@ -4,9 +4,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <set>
 
-#include "base/text.hpp"
+#include "evolution/selection_checks.hpp"
 
 namespace evodevo::conformance {
 namespace {
@@ -24,6 +23,17 @@ SampleGenomes genomes_for(const Subject& subject, const Selection& op, std::uint
   if (!op.traits().needs_real_genes || subject.use) return sample_genomes(subject, op, input);
   const Layout layout = real_layout();
   return {layout, [layout](Rng& rng) { return random_genome(layout, rng); }};
+}
+
+/// Returns what an operator returns. Throws Violation if the host's check of it throws.
+template <class Result, class Check>
+Result accepted(Result result, const Check& check) {
+  try {
+    check(result);
+  } catch (const std::runtime_error& error) {
+    throw Violation(std::string("it ") + error.what());
+  }
+  return result;
 }
 
 }  // namespace
@@ -48,17 +58,19 @@ void SampleTable::set_titles(const Subject& subject, const Selection& op, std::u
 }
 
 SampleTable::SampleTable(const Subject& subject, const Selection& op, std::uint64_t seed, std::uint32_t input,
-                         std::size_t rows, std::size_t failed)
+                         std::size_t rows, std::size_t failed, bool tied)
     : lists_(rows), rows_(rows) {
   Rng rng = stream(seed, input), gene_rng = stream(seed, input, 3);
   set_titles(subject, op, input);
   const SampleGenomes genomes = genomes_for(subject, op, input);
   layout_ = genomes.layout;
-  for (Lists& lists : lists_) lists.genome = genomes.draw(gene_rng);
+  const bool gets_copies = op.overrides.children && op.overrides.survivors;
+  for (std::size_t i = 0; i < rows; ++i)
+    lists_[i].genome = tied && gets_copies && i % 2 == 1 ? lists_[i - 1].genome : genomes.draw(gene_rng);
   std::vector<std::uint8_t> fails(rows, 0);
   std::fill_n(fails.begin(), failed, 1);
   rng.shuffle(fails);
-  set_rows(fails, rng);
+  set_rows(fails, tied, rng);
   refer();
 }
 
@@ -74,10 +86,13 @@ SampleTable::SampleTable(const SampleTable& other, const std::vector<std::uint32
   refer();
 }
 
-void SampleTable::set_rows(const std::vector<std::uint8_t>& fails, Rng& rng) {
+void SampleTable::set_rows(const std::vector<std::uint8_t>& fails, bool tied, Rng& rng) {
   const auto draw = [&](std::size_t count, double low, double high) {
     Numbers numbers;
-    for (std::size_t i = 0; i < count; ++i) numbers.push_back(rng.uniform(low, high));
+    for (std::size_t i = 0; i < count; ++i) {
+      const double number = rng.uniform(low, high);
+      numbers.push_back(tied ? std::round(number / high) * high : number);
+    }
     return numbers;
   };
   constexpr std::array lost{Status::diverged, Status::artefact, Status::passive, Status::lucky};
@@ -86,7 +101,7 @@ void SampleTable::set_rows(const std::vector<std::uint8_t>& fails, Rng& rng) {
     Lists& lists = lists_[i];
     Candidate& row = rows_[i];
     row.id = 100 + i;
-    row.age = rng.below(6);
+    row.age = rng.below(tied ? 2 : 6);
     row.is_newborn = i >= half;
     if (row.is_newborn && half > 0 && rng.chance(0.8)) {
       row.challenges = rng.below(half);
@@ -96,13 +111,13 @@ void SampleTable::set_rows(const std::vector<std::uint8_t>& fails, Rng& rng) {
     if (fails[i] != 0) {
       const bool is_infeasible = rng.chance(0.5);
       row.status = is_infeasible ? Status::invalid : lost[i % lost.size()];
-      row.violation = is_infeasible ? rng.uniform(0.1, 3) : std::numeric_limits<double>::infinity();
+      row.violation = is_infeasible ? draw(1, 0.1, 3).front() + 0.1 : std::numeric_limits<double>::infinity();
       continue;
     }
     lists.scores = scores;
     lists.descriptors = draw(descriptors_.size(), -1.2, 1.2);
     for (const evodevo::Case& one : cases_)
-      lists.cases.push_back(one.scenario.empty() ? scores[one.objective] : rng.uniform(-5, 5));
+      lists.cases.push_back(one.scenario.empty() ? scores[one.objective] : draw(1, -5, 5).front());
   }
 }
 
@@ -116,11 +131,13 @@ void SampleTable::refer() {
   }
 }
 
-SelectionContext SampleTable::context(std::span<const std::byte> memory) const {
+SelectionContext SampleTable::context(const SelectionMemory& memory) const {
   return {rows_, objectives_, descriptors_, cases_, layout_, 6, memory};
 }
 
-SelectionContext SampleTable::empty_context() const { return {{}, objectives_, descriptors_, cases_, layout_, 0, {}}; }
+SelectionContext SampleTable::empty_context() const {
+  return {{}, objectives_, descriptors_, cases_, layout_, 0, no_memory};
+}
 
 Numbers SampleTable::numbers() const {
   Numbers numbers;
@@ -131,49 +148,48 @@ Numbers SampleTable::numbers() const {
   return numbers;
 }
 
+Numbers numbers_of(const SelectionMemory& memory) {
+  Numbers numbers{double(memory.version)};
+  for (const auto& [name, list] : memory.lists) {
+    numbers.push_back(static_cast<double>(list.size()));
+    append(numbers, list);
+  }
+  return numbers;
+}
+
 Numbers numbers_of(const Survival& survival) {
   Numbers numbers(survival.rows.begin(), survival.rows.end());
-  for (const std::byte byte : survival.memory) numbers.push_back(std::to_integer<int>(byte));
+  if (survival.memory) append(numbers, numbers_of(*survival.memory));
   for (const Note& note : survival.notes) append(numbers, {double(note.row), double(note.title), note.value});
   return numbers;
 }
 
-Survival sound_survival(const Selection& op, const SelectionContext& context, std::uint32_t population, Rng& rng) {
-  const std::size_t titles = op.notes().size();
-  Survival survival = op.survive(context, population, rng);
-  const std::set<std::uint32_t> different(survival.rows.begin(), survival.rows.end());
-  if (survival.rows.empty() || survival.rows.size() > population || different.size() != survival.rows.size() ||
-      *different.rbegin() >= context.rows.size())
-    throw Violation("it chooses " + std::to_string(survival.rows.size()) + " survivors of " +
-                    std::to_string(context.rows.size()) + " rows; expected 1 to " + std::to_string(population) +
-                    " different ones");
-  std::set<std::pair<std::uint32_t, std::uint32_t>> noted;
-  for (const Note& note : survival.notes) {
-    if (!noted.emplace(note.row, note.title).second)
-      throw Violation("it notes number " + std::to_string(note.title) + " twice about row " + std::to_string(note.row) +
-                      "; expected one note for each row and number");
-    if (note.row >= context.rows.size() || note.title >= titles || !std::isfinite(note.value))
-      throw Violation("it notes number " + std::to_string(note.title) + " = " + to_text(note.value) + " about row " +
-                      std::to_string(note.row) + "; expected a finite number, one of the " + std::to_string(titles) +
-                      " of notes(), about one of " + std::to_string(context.rows.size()) + " rows");
+Numbers numbers_of(const Offspring& offspring) {
+  Numbers numbers;
+  for (const Child& child : offspring.children) {
+    append(numbers, conformance::numbers_of(child.genome));
+    numbers.insert(numbers.end(), child.parents.begin(), child.parents.end());
+    for (const ChildNote& note : child.notes) append(numbers, {double(note.title), note.value});
   }
-  return survival;
+  if (offspring.memory) append(numbers, numbers_of(*offspring.memory));
+  return numbers;
 }
 
-std::vector<Child> sound_children(const Selection& op, const SelectionContext& context, std::uint32_t count, Rng& rng) {
-  auto children = op.children(context, count, rng);
-  if (children.size() != count)
-    throw Violation("it makes " + std::to_string(children.size()) + " children; expected " + std::to_string(count));
-  for (const Child& child : children) {
-    require_within(child.genome, context.layout);
-    if (child.parents.size() > 2)
-      throw Violation("it makes a child of " + std::to_string(child.parents.size()) + " parents; expected 0 to 2");
-    for (const std::uint32_t row : child.parents)
-      if (row >= context.rows.size())
-        throw Violation("it makes a child of row " + std::to_string(row) + "; the table has " +
-                        std::to_string(context.rows.size()));
-  }
-  return children;
+Survival sound_survival(const Selection& op, const SelectionContext& context, std::uint32_t population, Rng& rng) {
+  return accepted(op.survivors(context, population, rng), [&](const Survival& survival) {
+    check_survival(survival, {op.notes(), op.memory()}, context, population);
+  });
+}
+
+Offspring sound_offspring(const Selection& op, const SelectionContext& context, std::uint32_t count, Rng& rng) {
+  return accepted(op.children(context, count, rng), [&](const Offspring& offspring) {
+    check_offspring(offspring, {op.notes(), op.memory()}, context, count);
+  });
+}
+
+std::vector<Couple> sound_couples(const Selection& op, const SelectionContext& context, std::uint32_t count, Rng& rng) {
+  return accepted(op.parents(context, count, rng),
+                  [&](const std::vector<Couple>& couples) { check_couples(couples, context, count); });
 }
 
 Numbers try_selection(const Subject& subject, const Selection& op, std::uint64_t seed, std::uint32_t input) {
@@ -183,17 +199,15 @@ Numbers try_selection(const Subject& subject, const Selection& op, std::uint64_t
   const Numbers before = table.numbers();
   Rng rng = stream(seed, input, 1);
   Numbers result;
-  std::vector<std::byte> memory;
-  if (traits.chooses_survivors) {
-    const Survival survival = op.survive(table.context(), population, rng);
-    memory = survival.memory;
+  SelectionMemory memory;
+  if (op.overrides.survivors) {
+    const Survival survival = op.survivors(table.context(), population, rng);
+    remember(memory, survival.memory);
     append(result, numbers_of(survival));
   }
-  if (traits.makes_children)
-    for (const Child& child : op.children(table.context(memory), count, rng))
-      append(result, conformance::numbers_of(child.genome));
-  else if (traits.chooses_parents)
-    for (const auto& [parent, mate] : op.couples(table.context(memory), 20, rng))
+  if (op.overrides.children) append(result, numbers_of(op.children(table.context(memory), count, rng)));
+  if (op.overrides.parents)
+    for (const auto& [parent, mate] : op.parents(table.context(memory), 20, rng))
       append(result, {double(parent), double(mate)});
   if (!same(before, table.numbers()))
     throw Violation("it changes the scores or the genes of individuals, which it may only read");

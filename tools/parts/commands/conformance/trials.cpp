@@ -36,8 +36,7 @@ void append(Numbers& numbers, const Body& body) {
     append(numbers, {m.mass, double(m.material), double(m.air_contacts)});
   }
   for (const Spring& s : body.springs)
-    append(numbers,
-           {double(s.a), double(s.b), s.rest_length, double(s.material), s.growth, s.phase_growth, s.stiffness_factor});
+    append(numbers, {double(s.a), double(s.b), s.rest_length, double(s.material), s.stiffness_factor});
   for (const Material& m : body.materials) append(numbers, m);
 }
 
@@ -92,9 +91,9 @@ Numbers try_encoding(const Subject& subject, const Encoding& op, std::uint64_t s
   Numbers result = genome_before;
   append(result, blueprint.body);
   for (const Vec3& position : blueprint.paired_at) append(result, position);
-  for (const Size& size : blueprint.sizes) append(result, {size.start, size.end});
   for (const Vec3& position : blueprint.origins) append(result, position);
-  for (const auto& [name, memory] : blueprint.mass_memory) append(result, memory);
+  for (const auto* given : {&blueprint.mass_memory, &blueprint.spring_memory})
+    for (const auto& [name, memory] : *given) append(result, memory);
   append(result, {double(blueprint.neighbours), double(blueprint.failure.size())});
   return result;
 }
@@ -103,7 +102,7 @@ Numbers try_mutation(const Subject& subject, const Mutation& op, std::uint64_t s
   Rng rng = stream(seed, input);
   auto [layout, genome] = sample_genes(op, sample_genomes(subject, op, input), rng);
   const Numbers layout_before = numbers_of(layout);
-  op.mutate(genome, layout, rng);
+  op.mutate(genome, {layout, generation_of(input)}, rng);
   require_untouched("the layout", layout_before, numbers_of(layout));
   return numbers_of(genome);
 }
@@ -113,7 +112,7 @@ Numbers try_crossover(const Subject& subject, const Crossover& op, std::uint64_t
   Rng rng = stream(seed, input);
   const Genome first = draw(rng), second = draw(rng);
   const Numbers first_before = numbers_of(first), second_before = numbers_of(second);
-  const Genome child = op.cross({first, second, input % 4 < 2}, layout, rng);
+  const Genome child = op.cross({first, second, input % 4 < 2}, {layout, generation_of(input)}, rng);
   require_untouched("the layout", numbers_of(sample_genomes(subject, op, input).layout), numbers_of(layout));
   require_untouched("the first parent", first_before, numbers_of(first));
   require_untouched("the second parent", second_before, numbers_of(second));
@@ -122,7 +121,7 @@ Numbers try_crossover(const Subject& subject, const Crossover& op, std::uint64_t
 
 Numbers try_devo(const Subject& subject, const Devo& op, std::uint64_t seed, std::uint32_t input) {
   const SampleLife life = sample_life(subject, op, seed, input);
-  Edits edits;
+  Edits edits(life.living.body);
   Rng rng = stream(seed, input, 1);
   op.develop(life.context(op.observes()), edits, rng);
   require_untouched("the body, its state, its records, its memory or its genes",
@@ -154,6 +153,8 @@ bool same(const Numbers& a, const Numbers& b) {
     return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
   });
 }
+
+std::uint32_t generation_of(std::uint32_t input) { return input % 4 == 3 ? 1'000'000 : 1 + input; }
 
 Rng stream(std::uint64_t seed, std::uint32_t input, std::uint32_t part) { return Rng(philox, {seed, input, part, 0}); }
 
@@ -188,24 +189,29 @@ Numbers numbers_of(const Genome& genome) {
 }
 
 Numbers numbers_of(const Edits& edits) {
-  Numbers numbers(edits.removed_springs.begin(), edits.removed_springs.end());
-  if (edits.growth) append(numbers, {edits.growth->from, edits.growth->to, edits.growth->whole});
-  numbers.insert(numbers.end(), edits.removed_masses.begin(), edits.removed_masses.end());
+  Numbers numbers;
+  for (const std::vector<Removal>* removals : {&edits.removed_springs, &edits.removed_masses})
+    for (const auto& [index, cause] : *removals) append(numbers, {double(index), cause});
+  if (edits.scaling)
+    append(numbers, {double(edits.scaling->number), edits.scaling->from, edits.scaling->to, edits.scaling->whole});
   for (const ChangedSpring& s : edits.changed_springs) {
-    append(numbers, {double(s.spring), s.rest_length.value_or(-1), s.stiffness_factor.value_or(-1)});
+    append(numbers, {double(s.spring), s.rest_length.value_or(-1), s.stiffness_factor.value_or(-1), s.cause});
     append(numbers, s.material.value_or(Material{}));
   }
   for (const NewMass& m : edits.new_masses) {
     append(numbers, m.position);
-    append(numbers, {m.mass, double(m.material)});
+    append(numbers, {m.mass.value_or(-1), double(m.material), m.cause});
   }
   for (const NewSpring& s : edits.new_springs) {
-    append(numbers, {double(s.a), double(s.b), s.rest_length.value_or(-1), s.stiffness_factor, s.phase_growth});
+    append(numbers, {double(s.a), double(s.b), s.rest_length.value_or(-1), s.stiffness_factor,
+                     s.like ? double(*s.like) : -1.0, s.cause});
     append(numbers, s.material);
   }
-  for (const auto list : Causes::lists) append(numbers, edits.causes.*list);
-  append(numbers, edits.mass_memory);
-  append(numbers, edits.spring_memory);
+  for (const MemoryEdits* memory : {&edits.mass_memory, &edits.spring_memory}) {
+    numbers.insert(numbers.end(), memory->items.begin(), memory->items.end());
+    append(numbers, memory->values);
+  }
+  if (edits.body_memory) append(numbers, *edits.body_memory);
   return numbers;
 }
 
@@ -225,6 +231,7 @@ DevoContext SampleLife::context(const RecordRequest& request) const {
                       .own = own,
                       .mass_memory = living.memory.front().masses.view("mass"),
                       .spring_memory = living.memory.front().springs.view("spring"),
+                      .body_memory = {living.memory.front().body, "body"},
                       .first_time = 0.5,
                       .last_time = 10,
                       .identities = living.numbers.identities(),
@@ -236,16 +243,19 @@ DevoContext SampleLife::context(const RecordRequest& request) const {
 
 namespace {
 
-/// Makes up the records of the masses and what the operator remembers. Degree and load are those of the body.
-void add_experience(const Devo& op, bool has_lived, Rng& rng, LivingBody& living) {
+/// Makes up the records of the masses and what the operator remembers: at birth `given` about each spring, under every
+/// name that it needs then. Degree and load are those of the body.
+void add_experience(const Devo& op, bool has_lived, const std::vector<double>& given, Rng& rng, LivingBody& living) {
   record_masses({.degree = true, .load = true}, living);
   for (std::size_t i = 0; i < living.body.masses.size(); ++i) {
     living.contact.push_back(std::max(0.0, rng.uniform(-1, 1)));  // about half of the masses touch no ground
     living.age.push_back(1 + rng.below(20));
   }
-  OperatorMemory& memory = living.memory.emplace_back(memory_at_birth(memory_names(op), {}, living.body));
+  BuiltBody born{.body = living.body};
+  for (const std::string& name : op.traits().needs_at_birth) born.spring_memory[name] = given;
+  OperatorMemory& memory = living.memory.emplace_back(memory_at_birth(memory_names(op), born));
   if (!has_lived) return;
-  for (std::vector<double>* values : {&memory.masses.values, &memory.springs.values})
+  for (std::vector<double>* values : {&memory.masses.values, &memory.springs.values, &memory.body})
     for (double& value : *values) value = rng.uniform();
 }
 
@@ -278,13 +288,14 @@ SampleLife sample_life(const Subject& subject, const Devo& op, std::uint64_t see
   }
   const bool may_be_parallel = input % 4 == 1;  // as in voxels with springs of their own
   std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  std::vector<double> given;
   for (std::uint32_t i = 0; i < 5 * masses; ++i) {
     const std::uint32_t a = rng.below(masses), b = rng.below(masses);
     if (a == b || (!pairs.insert(std::minmax(a, b)).second && !may_be_parallel)) continue;
     const double length = norm(body.masses[a].rest - body.masses[b].rest);
     const Material stiff{1000.0 + rng.below(3), 0.1, 1, 0};
-    const auto growth = static_cast<float>(rng.uniform(0.8, 1.25));
-    body.springs.push_back({a, b, length, body.material_index(stiff), growth, length});
+    given.push_back(rng.uniform(-0.2, 0.25));
+    body.springs.push_back({a, b, length, body.material_index(stiff), length});
     const double stress = rng.uniform(0, 100);
     life.living.stress.push_back(stress);
     life.living.peak_force.push_back(stress * rng.uniform(1, 3));
@@ -297,16 +308,17 @@ SampleLife sample_life(const Subject& subject, const Devo& op, std::uint64_t see
   for (std::uint64_t i = 0; i < masses; ++i) identities.push_back(mixed(7, i));
   life.living.numbers = MassNumbers(std::move(identities));
   Rng experience_rng = stream(seed, input, 100);
-  add_experience(op, input % 4 >= 2, experience_rng, life.living);
+  add_experience(op, input % 4 >= 2, given, experience_rng, life.living);
   if (input % 4 >= 2)
     for (Spring& spring : body.springs) spring.stiffness_factor = experience_rng.uniform(0.5, 2);
-  for (Spring& spring : body.springs) spring.phase_growth = static_cast<float>(experience_rng.uniform(-1, 1));
   return life;
 }
 
 SampleLife without_mass(const SampleLife& life, std::uint32_t mass) {
   SampleLife without = life;
-  apply(Edits{.removed_masses = {mass}}, without.living);
+  Edits edits;
+  edits.remove_mass(mass);
+  apply(edits, without.living);
   return without;
 }
 

@@ -22,6 +22,9 @@ bool same(const Numbers& a, const Numbers& b);
 /// Returns a stream of random numbers that depends on nothing but the arguments.
 Rng stream(std::uint64_t seed, std::uint32_t input, std::uint32_t part = 0);
 
+/// Returns the generation in which the child of an input is born: each from 1 on, and at times a very late one.
+std::uint32_t generation_of(std::uint32_t input);
+
 /// The genes that a mutation works on: those of others and its own.
 struct SampleGenes {
   Layout layout;

@@ -26,10 +26,9 @@ bool are_born_alike(const BuiltBody& one, const BuiltBody& other) {
          std::ranges::equal(a.springs, b.springs,
                             [](const Spring& p, const Spring& q) {
                               return p.a == q.a && p.b == q.b && p.rest_length == q.rest_length &&
-                                     p.material == q.material && p.growth == q.growth &&
-                                     p.stiffness_factor == q.stiffness_factor && p.phase_growth == q.phase_growth;
+                                     p.material == q.material && p.stiffness_factor == q.stiffness_factor;
                             }) &&
-         a.materials == b.materials;
+         a.materials == b.materials && one.spring_memory == other.spring_memory;
 }
 
 /// Returns at most `most_at_once` of the items from number `begin` on.
@@ -109,8 +108,8 @@ bool Laboratory::develop_alike(const Genome& a, const Genome& b) const {
   });
 }
 
-std::vector<Offspring> Laboratory::children_of_couples(const std::vector<Individual>& robots,
-                                                       const Couples& couples) const {
+std::vector<MeasuredChild> Laboratory::children_of_couples(const std::vector<Individual>& robots,
+                                                           std::span<const Couple> couples) const {
   const auto highest = std::ranges::max_element(robots, {}, &Individual::id);
   const std::uint32_t born = std::ranges::max_element(robots, {}, &Individual::born)->born + 1;
   const std::vector<Individual> born_now = children_of(experiment_, robots, couples, born, highest->id + 1, &workers_);
@@ -118,12 +117,12 @@ std::vector<Offspring> Laboratory::children_of_couples(const std::vector<Individ
   for (std::size_t i = 0; i < robots.size(); ++i) index[robots[i].id] = i;
   std::vector<std::size_t> first;  // life of each child
   for (std::size_t i = 0; i < couples.size(); ++i)
-    first.push_back(i > 0 && couples[i].first == couples[i - 1].first ? first.back() + lives_at_once() : lives());
+    first.push_back(i > 0 && couples[i].parent == couples[i - 1].parent ? first.back() + lives_at_once() : lives());
   const Scores scores = combined_scores(scores_in(lives_of(born_now, first, lives_at_once(), false)));
-  std::vector<Offspring> children;
+  std::vector<MeasuredChild> children;
   for (std::size_t i = 0; i < born_now.size(); ++i) {
-    Offspring& child = children.emplace_back();
-    child.family = couples[i].first;
+    MeasuredChild& child = children.emplace_back();
+    child.family = couples[i].parent;
     for (const std::uint32_t parent : born_now[i].parents) child.parents.push_back(index.at(parent));
     child.made_by = born_now[i].made_by;
     child.score = scores[i].front();

@@ -17,7 +17,7 @@ using Lives = std::vector<std::vector<std::vector<double>>>;
 Scores scores_in(const Lives& lives);
 
 /// A child of a measured robot.
-struct Offspring {
+struct MeasuredChild {
   std::size_t family = 0;            ///< index of the parent whose place it may take
   std::vector<std::size_t> parents;  ///< indices of all its parents
   std::string made_by;               ///< Individual::made_by
@@ -44,7 +44,8 @@ class Laboratory {
   /// Returns a child of each couple of robots, and lets it live in lives in which no robot of a population was
   /// measured. Children of one couple, which follow each other, live in lives of different numbers, since luck is
   /// common to those of one number.
-  std::vector<Offspring> children_of_couples(const std::vector<Individual>& robots, const Couples& couples) const;
+  std::vector<MeasuredChild> children_of_couples(const std::vector<Individual>& robots,
+                                                 std::span<const Couple> couples) const;
 
  private:
   /// Lets individual i live `count` times, from number `first[i]` on.

@@ -59,13 +59,13 @@ struct Families {
 
 /// Returns the families of those children that `made_by` names as their makers, or of all if it is empty. Children of
 /// one robot follow each other. On the scale of values, families and children without a fitness are left out.
-Families families_of(const Scaled& scores, const std::vector<Offspring>& children, const std::string& made_by) {
+Families families_of(const Scaled& scores, const std::vector<MeasuredChild>& children, const std::string& made_by) {
   Families all;
   for (std::size_t i = 0; i < children.size();) {
     const std::size_t robot = children[i].family;
     Family family{std::vector<double>(scores.parents[robot].size()), 0, 0};
     for (; i < children.size() && children[i].family == robot; ++i) {
-      const Offspring& child = children[i];
+      const MeasuredChild& child = children[i];
       if ((!made_by.empty() && child.made_by != made_by) || std::isnan(scores.children[i])) continue;
       std::vector<double> parents(family.parents.size());
       for (const std::size_t parent : child.parents)
@@ -100,7 +100,7 @@ std::optional<Estimate> corrected(const Families& all, const Scores& parents) {
 }
 
 /// `has_repeatability`: whether what repeats in the parents' scores could be inherited.
-void add_heritability(const Scaled& scores, const std::vector<Offspring>& children, bool has_repeatability,
+void add_heritability(const Scaled& scores, const std::vector<MeasuredChild>& children, bool has_repeatability,
                       Findings& findings) {
   const Families all = families_of(scores, children, "");
   findings.add("heritability", "all children", scores.scale, heritability(all.families), all.children);
@@ -108,7 +108,7 @@ void add_heritability(const Scaled& scores, const std::vector<Offspring>& childr
     findings.add("heritability / repeatability", "all children", scores.scale, corrected(all, scores.parents),
                  all.children);
   std::set<std::string> operators;
-  for (const Offspring& child : children) operators.insert(child.made_by);
+  for (const MeasuredChild& child : children) operators.insert(child.made_by);
   if (operators.size() < 2) return;
   for (const std::string& made_by : operators)
     if (const Families some = families_of(scores, children, made_by); some.families.size() >= least_robots)
@@ -124,12 +124,12 @@ std::optional<Estimate> median_with_failures(std::vector<double> scores, bool ma
 }
 
 /// Draws a mate for each robot, another one if possible, and returns each couple so often.
-Couples couples_at_random(std::size_t robots, Rng& rng) {
-  Couples couples;
+std::vector<Couple> couples_at_random(std::size_t robots, Rng& rng) {
+  std::vector<Couple> couples;
   const auto count = static_cast<std::uint32_t>(robots);
   for (std::uint32_t robot = 0; robot < count; ++robot) {
     const std::uint32_t mate = (robot + 1 + rng.below(std::max(1u, count - 1))) % count;
-    couples.insert(couples.end(), children_of_each, {robot, mate});
+    couples.insert(couples.end(), children_of_each, Couple{robot, mate});
   }
   return couples;
 }
@@ -179,11 +179,11 @@ void measure(const Laboratory& laboratory, const Experiment& experiment, const G
   findings.add("score", "parents", "value", median_with_failures(scores, maximise), group.robots.size());
   if (experiment.makes_children()) return;
 
-  const std::vector<Offspring> children =
+  const std::vector<MeasuredChild> children =
       laboratory.children_of_couples(group.robots, couples_at_random(group.robots.size(), rng));
   std::vector<double> values;
   double equal = 0;
-  for (const Offspring& child : children) {
+  for (const MeasuredChild& child : children) {
     values.push_back(child.score);
     equal += child.is_equal;
   }
@@ -220,10 +220,10 @@ void measure_champion(const Laboratory& laboratory, const Experiment& experiment
   std::erase_if(others, [&](const Individual& other) { return other.id == champion.id; });
   others.push_back(champion);
   const auto self = static_cast<std::uint32_t>(others.size() - 1);
-  Couples couples;
-  for (std::size_t i = 0; i < children_of_champion; ++i) couples.emplace_back(self, self == 0 ? 0 : rng.below(self));
+  std::vector<Couple> couples;
+  for (std::size_t i = 0; i < children_of_champion; ++i) couples.push_back({self, self == 0 ? 0 : rng.below(self)});
   std::vector<double> scores;
-  for (const Offspring& child : laboratory.children_of_couples(others, couples)) scores.push_back(child.score);
+  for (const MeasuredChild& child : laboratory.children_of_couples(others, couples)) scores.push_back(child.score);
   add("children", scores);
 }
 

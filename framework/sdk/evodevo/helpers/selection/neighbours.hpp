@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <nanoflann.hpp>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -31,10 +32,26 @@ inline Coordinates place_of(const Candidate& row, std::span<const Objective> des
   return place;
 }
 
-/// Whether a place, such as a remembered one, lies in a space of so many descriptors.
-inline bool is_place(const Coordinates& place, std::size_t descriptors) {
-  return place.size() == descriptors &&
-         std::all_of(place.begin(), place.end(), [](double x) { return x >= -farthest && x <= farthest; });
+/// Returns places as a list of a memory: the coordinates of one after those of another.
+inline std::vector<double> list_of_places(const std::vector<Coordinates>& places) {
+  std::vector<double> list;
+  for (const Coordinates& place : places) list.insert(list.end(), place.begin(), place.end());
+  return list;
+}
+
+/// Returns the `count` places in the space of so many descriptors that a list of a memory has. Throws
+/// std::runtime_error if there is no such list, or if it has other places.
+inline std::vector<Coordinates> places_in(const SelectionMemory& memory, const std::string& name, std::size_t count,
+                                          std::size_t descriptors) {
+  const std::vector<double>& list = memory.list(name);
+  if (list.size() != count * descriptors ||
+      !std::all_of(list.begin(), list.end(), [](double x) { return x >= -farthest && x <= farthest; }))
+    SelectionMemory::fail("does not have " + std::to_string(count) + " " + name + " of " + std::to_string(descriptors) +
+                          " descriptors from -1e6 to 1e6");
+  std::vector<Coordinates> places;
+  for (auto next = list.begin(); next != list.end(); next += static_cast<std::ptrdiff_t>(descriptors))
+    places.emplace_back(next, next + static_cast<std::ptrdiff_t>(descriptors));
+  return places;
 }
 
 /// Finds the nearest of many fixed places by Euclidean distance, with a k-d tree (nanoflann).
