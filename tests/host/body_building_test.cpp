@@ -149,8 +149,9 @@ TEST(BodyBuilding, TheEncodingCompletesWhatIsJoinedAndMemoryFollowsTheSpringsTha
       const Vec3 way = joined.body.masses[springs[s].a].rest - joined.body.masses[springs[s].b].rest;
       EXPECT_EQ(springs[s].rest_length, norm(way)) << "at first, the distance";
       springs[s].rest_length = sign(springs[s].a, springs[s].b);
-      joined.spring_memory["growth"].push_back(-sign(springs[s].a, springs[s].b));
-      joined.spring_memory["turn"].push_back(1 / sign(springs[s].a, springs[s].b));
+      EXPECT_EQ(joined.spring_memory["growth"].at(s), 0) << "at first, too";
+      joined.spring_memory["growth"][s] = -sign(springs[s].a, springs[s].b);
+      joined.spring_memory["turn"].at(s) = 1 / sign(springs[s].a, springs[s].b);
     }
   });
   ASSERT_EQ(built.failure, "");

@@ -390,7 +390,10 @@ class Levelling final : public Selection {
   std::vector<Couple> parents(const SelectionContext& context, std::uint32_t count, Rng& rng) const override {
     std::vector<Couple> couples;
     const auto draw = [&] { return rng.below(static_cast<std::uint32_t>(context.rows.size())); };
-    while (couples.size() < count) couples.push_back({draw(), draw()});
+    while (couples.size() < count) {
+      const std::uint32_t mate = draw(), parent = draw();
+      couples.push_back({parent, mate});
+    }
     return couples;
   }
 

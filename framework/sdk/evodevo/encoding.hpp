@@ -65,8 +65,9 @@ class Encoding : public Operator {
   /// layout() returned.
   virtual Blueprint decode(const Genome& genome, const Layout& layout, const EncodingContext& context) const = 0;
   /// Completes a blueprint whose `neighbours` the host has joined. Springs have the distance of the rest positions for
-  /// rest length, and the mean material of their masses; the encoding may change this, and give springs memory or set
-  /// Blueprint::failure. It must not add or remove masses or springs.
+  /// rest length, and the mean material of their masses, and remember 0 under the names that decode() has used; the
+  /// encoding may change this, give springs other memory, or set Blueprint::failure. It must not add or remove masses
+  /// or springs.
   virtual void joined([[maybe_unused]] Blueprint& blueprint) const {}
   /// Returns the names of what decode() or joined() give springs to remember (Blueprint::spring_memory).
   virtual std::vector<std::string> spring_memory() const { return {}; }
