@@ -167,7 +167,7 @@ run = sqlite3.connect(sys.argv[1] + "/run.sqlite")
 for query in ("SELECT id, born, died, origin, parent, mate, made_by, hex(genes), status, spring_evaluations FROM individuals",
               "SELECT * FROM scores", "SELECT * FROM notes",
               "SELECT generation, evaluations, best, median, diverged, invalid, clones FROM generations",
-              "SELECT generation, hex(bytes) FROM memory"):
+              "SELECT role, name, generation, version, hex(numbers) FROM memory"):
     rows = run.execute(query).fetchall()
     assert rows, query + " has no rows"
     print(query, *rows, sep="\n")

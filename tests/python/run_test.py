@@ -75,10 +75,10 @@ class OfASmallRun(unittest.TestCase):
             options = [value if isinstance(value, str) and not re.fullmatch("[0-9a-f]{16}", value) else ""
                        for value in values]  # and not the ids of references
             self.assertEqual(list(table["option"]), options)
-        self.assertIn("on", options)  # a link of the network
             first = next(iter(printed["sections"][0]["blocks"][0]["genes"].values()))
             if isinstance(first, float):
                 self.assertAlmostEqual(first, table["value"][0], places=6)
+        self.assertIn("on", options)  # a link of the network
 
     def test_a_lineage_ends_with_a_founder(self):
         line = self.run_.lineage(self.run_.individuals["parent"].last_valid_index())
