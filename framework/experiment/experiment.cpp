@@ -156,19 +156,17 @@ RecordRequest cycle_request(const Experiment& experiment, std::int64_t cycle, st
   return all;
 }
 
-namespace {
-
-std::vector<std::string> checked(std::vector<std::string> names, const char* function) {
+std::vector<std::string> checked_names(std::vector<std::string> names, const char* function) {
   for (auto name = names.begin(); name != names.end(); ++name) {
     const std::string place = std::string(function) + "() gives the name \"" + printable(*name) + "\"";
     if (name->empty()) throw std::invalid_argument(place + "; expected a name that is not empty");
+    if (const std::string fault = text_fault(*name); !fault.empty())
+      throw std::invalid_argument(place + ", which " + fault);
     if (std::find(names.begin(), name, *name) != name)
       throw std::invalid_argument(place + " twice; expected different names");
   }
   return names;
 }
-
-}  // namespace
 
 std::vector<NoteTitle> Experiment::note_titles() const {
   std::vector<NoteTitle> titles = notes;
@@ -177,8 +175,8 @@ std::vector<NoteTitle> Experiment::note_titles() const {
 }
 
 MemoryNames memory_names(const Devo& op) {
-  MemoryNames names{checked(op.mass_memory(), "mass_memory"), checked(op.spring_memory(), "spring_memory"),
-                    checked(op.body_memory(), "body_memory")};
+  MemoryNames names{checked_names(op.mass_memory(), "mass_memory"), checked_names(op.spring_memory(), "spring_memory"),
+                    checked_names(op.body_memory(), "body_memory")};
   for (const std::string& needed : op.traits().needs_at_birth)
     if (std::ranges::find(names.springs, needed) == names.springs.end())
       throw std::invalid_argument("Traits::needs_at_birth names \"" + printable(needed) +
@@ -187,7 +185,7 @@ MemoryNames memory_names(const Devo& op) {
 }
 
 std::vector<std::string> spring_memory_names(const Encoding& encoding) {
-  return checked(encoding.spring_memory(), "spring_memory");
+  return checked_names(encoding.spring_memory(), "spring_memory");
 }
 
 MemoryNames memory_names(const Experiment& experiment, std::size_t index) {

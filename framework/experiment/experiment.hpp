@@ -108,6 +108,9 @@ RecordRequest cycle_request(const Experiment& experiment, std::int64_t cycle, st
 struct MemoryNames {
   std::vector<std::string> masses, springs, body;
 };
+/// Returns the names of what an operator remembers, which one of its functions declares. Throws std::invalid_argument
+/// if a name occurs twice, is empty or could not be printed.
+std::vector<std::string> checked_names(std::vector<std::string> names, const char* function);
 /// Returns the names that a devo operator declares. Throws std::invalid_argument if it gives a name twice, or an empty
 /// one, or needs something at birth that it does not declare.
 MemoryNames memory_names(const Devo& op);

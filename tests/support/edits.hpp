@@ -61,8 +61,8 @@ inline std::vector<double> remembered(const MemoryEdits& memory) {
 inline Edits removing(const Body& body, const std::vector<std::uint32_t>& springs,
                       const std::vector<std::uint32_t>& masses = {}) {
   Edits edits(body);
-  for (const std::uint32_t spring : springs) edits.remove_spring(spring);
-  for (const std::uint32_t mass : masses) edits.remove_mass(mass);
+  for (const std::uint32_t goes : springs) edits.remove_spring(goes);
+  for (const std::uint32_t goes : masses) edits.remove_mass(goes);
   return edits;
 }
 

@@ -87,15 +87,6 @@ void check_notes(const TomlReader& t, const std::vector<NoteTitle>& notes) {
   }
 }
 
-void check_lists(const TomlReader& t, const std::vector<std::string>& names) {
-  for (auto name = names.begin(); name != names.end(); ++name) {
-    if (name->empty()) t.fail("name", "this operator remembers a list without a name; name it in memory()");
-    if (const std::string fault = text_fault(*name); !fault.empty()) t.fail("name", "the name of its list " + fault);
-    if (std::find(names.begin(), name, *name) != name)
-      t.fail("name", "it remembers two lists \"" + *name + "\"; rename one of them in memory()");
-  }
-}
-
 class SelectionTables {
  public:
   SelectionTables(const OperatorFactory& factory, const References& references, Experiment& experiment)
@@ -143,9 +134,8 @@ class SelectionTables {
     TomlWriter writer;
     factory_.write(t, *op, writer);
     for (auto&& [key, value] : writer.take()) record.insert_or_assign(key, value);
-    const auto memory = factory_.ask(t, [&] { return op->memory(); });
+    const auto memory = factory_.ask(t, [&] { return checked_names(op->memory(), "memory"); });
     check_choice(t, op->overrides, !memory.empty(), choice);
-    check_lists(t, memory);
     check_traits(t, factory_.ask(t, [&] { return op->traits(); }), out_);
     const bool makes_children = choice.parents && op->overrides.children;
     if (makes_children) out_.child_maker = out_.uses.back().name;
